@@ -1,0 +1,44 @@
+#include "agents/context.hpp"
+
+#include <utility>
+
+namespace hearsay {
+
+Context::Context(Simulation& simulation, Radio& radio, Identity identity)
+    : simulation_(simulation), radio_(radio), identity_(std::move(identity)) {}
+
+double Context::parameter(const std::string& name, double otherwise) const {
+  const auto found = identity_.parameters.find(name);
+  return found == identity_.parameters.end() ? otherwise : found->second;
+}
+
+Stream Context::stream(std::string_view purpose) const {
+  return simulation_.stream(Purpose(purpose), Entity::agent(id()));
+}
+
+Stream Context::stream_at(std::string_view purpose, std::uint64_t count) const {
+  return simulation_.stream_at(Purpose(purpose), Entity::agent(id()), count);
+}
+
+bool Context::broadcast(std::string_view kind, std::span<const std::byte> bytes) {
+  Outgoing packet;
+  packet.kind = simulation_.record().name(kind);
+  packet.bytes = bytes;
+  return send(packet);
+}
+
+void Context::record(std::string_view name, double value) {
+  Record& record = simulation_.record();
+  record.series(now(), id(), record.name(""), record.name(name), value);
+}
+
+void Context::record_final(std::string_view name, double value) {
+  Record& record = simulation_.record();
+  record.scalar(id(), record.name(name), value);
+}
+
+void Context::record_event(std::string_view kind, std::string_view detail) {
+  simulation_.record().event(now(), id(), kind, detail);
+}
+
+}  // namespace hearsay

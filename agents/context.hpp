@@ -1,0 +1,73 @@
+// What one agent can do in its world: tell the time, sleep, draw, talk, leave a trace in the
+// record.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "net/radio.hpp"
+#include "sim/kernel/process.hpp"
+#include "sim/kernel/simulation.hpp"
+
+namespace hearsay {
+
+class Context {
+ public:
+  struct Identity {
+    AgentId id = 0;
+    std::string name;
+    std::string kind;
+    std::map<std::string, double> parameters;  ///< [agents.parameters] of the scenario
+  };
+  /// `simulation` and `radio` must outlive the context.
+  Context(Simulation& simulation, Radio& radio, Identity identity);
+
+  AgentId id() const { return identity_.id; }
+  const std::string& name() const { return identity_.name; }
+  const std::string& kind() const { return identity_.kind; }
+  /// A number from [agents.parameters], or `otherwise` if the scenario does not give it.
+  double parameter(const std::string& name, double otherwise) const;
+
+  Time now() const { return simulation_.now(); }
+  /// When the run ends; events at this instant still happen.
+  Time end() const { return simulation_.end(); }
+
+  /// co_await context().sleep(5_s). A process that looks at the world uses Phase::measure, so that
+  /// at one instant all look before anybody talks.
+  Sleep sleep(Duration span, Phase phase = Phase::act) {
+    return hearsay::sleep(simulation_, span, phase);
+  }
+  Sleep sleep_until(Time until, Phase phase = Phase::act) {
+    return hearsay::sleep_until(simulation_, until, phase);
+  }
+
+  /// Draws of this agent's own for `purpose`; other agents and purposes are independent of it.
+  Stream stream(std::string_view purpose) const;
+  /// The draws that belong to the `count`-th thing of that name.
+  Stream stream_at(std::string_view purpose, std::uint64_t count) const;
+
+  /// Whom a broadcast reaches if nothing is lost, by number.
+  std::span<const AgentId> neighbours() const { return radio_.topology().neighbours(id()); }
+  /// Hands a packet to the agent's radio. @return false if the transmitter's queue was full.
+  bool send(const Outgoing& packet) { return radio_.send(id(), packet); }
+  /// The same, to everybody who can hear.
+  bool broadcast(std::string_view kind, std::span<const std::byte> bytes);
+
+  /// Keeps a value over time: a row of `series`.
+  void record(std::string_view name, double value);
+  /// Keeps a value of the whole run: a row of `scalar`.
+  void record_final(std::string_view name, double value);
+  /// Keeps an event: a row of `event`.
+  void record_event(std::string_view kind, std::string_view detail);
+
+  Simulation& simulation() { return simulation_; }
+
+ private:
+  Simulation& simulation_;
+  Radio& radio_;
+  Identity identity_;
+};
+
+}  // namespace hearsay

@@ -1,0 +1,85 @@
+#include "agents/estimator_agent.hpp"
+
+#include <utility>
+
+namespace hearsay {
+
+EstimatorAgent::EstimatorAgent(Context& context, Witness& witness, Options options)
+    : Agent(context),
+      witness_(witness),
+      options_(std::move(options)),
+      estimator_({.rule = options_.rule,
+                  .subjects = options_.subjects,
+                  .dimension = options_.dimension,
+                  .ledgers = witness.ledgers()},
+                 context.neighbours()),
+      message_kind_(context.simulation().record().name("gaussian")) {
+  witness_.watch(context.id(), estimator_);
+}
+
+void EstimatorAgent::start() {
+  if (!options_.sensors.empty()) spawn(look());
+  if (!options_.observations.empty()) spawn(replay());
+  const bool speaks = gaussian::info(options_.rule).sends != gaussian::Sends::nothing;
+  if (options_.talk && speaks) spawn(talk());
+}
+
+void EstimatorAgent::on_packet(const Packet& packet) {
+  if (packet.kind == message_kind_) estimator_.heard(packet.sender, packet.bytes, packet.rider);
+}
+
+Process EstimatorAgent::look() {
+  Time next = options_.sensor_start;
+  for (std::uint64_t count = 0; next <= options_.sensor_end; ++count) {
+    co_await context().sleep_until(next, Phase::measure);
+    for (std::size_t s = 0; s < options_.sensors.size(); ++s) {
+      Stream draws = context().simulation().stream_at(
+          Purpose("sensor noise"), Entity::sensor(context().id(), static_cast<std::uint32_t>(s)),
+          count);
+      const gaussian::Belief information = options_.sensors[s].measure(draws);
+      const int subject = static_cast<int>(s);
+      estimator_.measured(subject, information, witness_.measured(subject, information));
+    }
+    next = next + options_.sensor_period;
+  }
+}
+
+Process EstimatorAgent::replay() {
+  for (const Observation& observation : options_.observations) {
+    if (observation.time > context().now()) {
+      co_await context().sleep_until(observation.time, Phase::measure);
+    }
+    estimator_.measured(observation.subject, observation.information,
+                        witness_.measured(observation.subject, observation.information));
+  }
+}
+
+Process EstimatorAgent::talk() {
+  for (std::uint64_t tick = 0;; ++tick) {
+    const Time when = options_.talk->tick(tick);
+    co_await context().sleep_until(when);
+    say(tick);
+  }
+}
+
+void EstimatorAgent::say(std::uint64_t tick) {
+  if (gaussian::info(options_.rule).sends == gaussian::Sends::belief) {
+    say_to(no_agent, tick);
+    return;
+  }
+  for (const AgentId neighbour : context().neighbours()) say_to(neighbour, tick);
+}
+
+void EstimatorAgent::say_to(AgentId receiver, std::uint64_t tick) {
+  StaticGaussianEstimator::Speech speech = estimator_.speech(receiver);
+  if (speech.bytes.empty()) return;
+  Outgoing packet;
+  packet.kind = message_kind_;
+  packet.bytes = speech.bytes;
+  packet.receiver = receiver;
+  packet.tick = tick;
+  packet.rider = std::move(speech.rider);
+  if (context().send(packet)) estimator_.sent(receiver);
+}
+
+}  // namespace hearsay

@@ -1,0 +1,177 @@
+#include "agents/estimators/static_gaussian.hpp"
+
+#include <algorithm>
+
+#include "sim/kernel/error.hpp"
+
+namespace hearsay {
+namespace {
+
+using gaussian::Belief;
+using gaussian::Memory;
+using gaussian::Sends;
+
+TrackedBelief unknown(int dimension) { return {Belief::unknown(dimension), Ledger{}}; }
+
+}  // namespace
+
+RiderPtr LedgerPool::make(LedgerRider*& rider) {
+  if (free_.empty()) {
+    riders_.push_back(std::unique_ptr<LedgerRider>(new LedgerRider(free_)));
+    free_.reserve(riders_.size());
+    rider = riders_.back().get();
+  } else {
+    rider = free_.back();
+    free_.pop_back();
+  }
+  return RiderPtr(rider);
+}
+
+StaticGaussianEstimator::StaticGaussianEstimator(const Options& options,
+                                                 std::span<const AgentId> neighbours)
+    : options_(options), rule_(gaussian::info(options.rule)) {
+  const auto subjects = static_cast<std::size_t>(options.subjects);
+  own_.assign(subjects, unknown(options.dimension));
+  received_ = unknown(options.dimension);
+  for (const AgentId id : neighbours) {
+    Neighbour neighbour{.id = id, .memory = {}};
+    if (rule_.memory != Memory::nothing) {
+      neighbour.memory.assign(subjects, unknown(options.dimension));
+    }
+    neighbours_.push_back(std::move(neighbour));
+  }
+}
+
+void StaticGaussianEstimator::measured(int subject, const Belief& information,
+                                       std::size_t measurement) {
+  TrackedBelief& own = own_[static_cast<std::size_t>(subject)];
+  own.belief += information;
+  if (keeps_ledger()) own.ledger.measured(measurement);
+  ++counts_.measurements;
+}
+
+StaticGaussianEstimator::Speech StaticGaussianEstimator::speech(AgentId neighbour) {
+  const Neighbour* to = neighbour == no_agent ? nullptr : find(neighbour);
+  const bool less_heard = rule_.sends == Sends::belief_less_heard;
+  require(!less_heard || to != nullptr, "a rule that speaks to each neighbour needs one");
+  LedgerRider* rider = nullptr;
+  Speech speech;
+  if (keeps_ledger()) speech.rider = options_.ledgers->make(rider);
+
+  std::size_t spoken = 0;
+  outgoing_.beliefs.resize(own_.size());
+  if (rider) rider->ledgers.resize(own_.size());
+  for (std::size_t s = 0; s < own_.size(); ++s) {
+    gaussian::BeliefEntry& entry = outgoing_.beliefs[spoken];
+    entry.subject = static_cast<std::uint32_t>(s);
+    entry.belief = own_[s].belief;
+    if (less_heard) entry.belief -= to->memory[s].belief;
+    if (entry.belief.omega.isZero(0.0)) continue;
+    if (rider) {
+      rider->ledgers[spoken] = own_[s].ledger;
+      if (less_heard) {
+        rider->ledgers[spoken].combine(1.0, 0.0, own_[s].ledger, 1.0, &to->memory[s].ledger);
+      }
+    }
+    ++spoken;
+  }
+  outgoing_.beliefs.resize(spoken);
+  if (spoken == 0) return {};
+  outgoing_.incarnation = incarnation_;
+  outgoing_.count = next_count_++;
+  gaussian::encode(outgoing_, bytes_);
+  speech.bytes = bytes_;
+  return speech;
+}
+
+void StaticGaussianEstimator::sent(AgentId neighbour) {
+  if (rule_.memory != Memory::last_exchanged) return;
+  for (Neighbour& to : neighbours_) {
+    if (neighbour == no_agent || neighbour == to.id) to.memory = own_;
+  }
+}
+
+void StaticGaussianEstimator::heard(AgentId from, std::span<const std::byte> bytes,
+                                    const Rider* rider) {
+  Neighbour* sender = find(from);
+  if (sender == nullptr || !gaussian::decode(bytes, incoming_) || outdated(*sender, incoming_)) {
+    ++counts_.refused;
+    return;
+  }
+  const auto usable = [this](const gaussian::BeliefEntry& entry) {
+    return entry.subject < own_.size() && entry.belief.dimension() == options_.dimension;
+  };
+  if (!std::all_of(incoming_.beliefs.begin(), incoming_.beliefs.end(), usable)) {
+    ++counts_.refused;
+    return;
+  }
+  sender->heard = true;
+  sender->incarnation = incoming_.incarnation;
+  sender->count = incoming_.count;
+  const auto* ledgers = static_cast<const LedgerRider*>(rider);
+  for (std::size_t i = 0; i < incoming_.beliefs.size(); ++i) {
+    const gaussian::BeliefEntry& entry = incoming_.beliefs[i];
+    fuse(static_cast<int>(entry.subject), *sender, entry.belief,
+         ledgers ? &ledgers->ledgers[i] : nullptr);
+  }
+}
+
+bool StaticGaussianEstimator::outdated(Neighbour& from, const gaussian::Message& message) const {
+  // Algorithm 3.4 as printed adds whatever arrives; only the rule that replaces needs an order.
+  if (rule_.memory != Memory::last_heard || !from.heard) return false;
+  if (message.incarnation != from.incarnation) return message.incarnation < from.incarnation;
+  return message.count <= from.count;
+}
+
+void StaticGaussianEstimator::fuse(int subject, Neighbour& from, const Belief& belief,
+                                   const Ledger* ledger) {
+  const auto s = static_cast<std::size_t>(subject);
+  TrackedBelief& own = own_[s];
+  TrackedBelief* memory = rule_.memory == Memory::nothing ? nullptr : &from.memory[s];
+  const gaussian::Coefficients k = gaussian::coefficients(options_.rule, own.belief, belief);
+  if (k.skipped != nullptr) {
+    ++counts_.skipped;
+    return;
+  }
+  ++counts_.fusions;
+  const Belief before = own.belief;
+  own.belief *= k.own;
+  received_.belief = belief;
+  received_.belief *= k.received;
+  own.belief += received_.belief;
+  if (memory != nullptr && k.common != 0.0) {
+    received_.belief = memory->belief;
+    received_.belief *= k.common;
+    own.belief -= received_.belief;
+  }
+  if (keeps_ledger() && ledger != nullptr) {
+    own.ledger.combine(k.own, k.received, *ledger, k.common, memory ? &memory->ledger : nullptr);
+  }
+  if (memory != nullptr) {
+    memory->belief = belief;
+    if (ledger != nullptr) memory->ledger = *ledger;
+  }
+  note_gain(before, belief, own.belief);
+}
+
+void StaticGaussianEstimator::note_gain(const Belief& before, const Belief& received,
+                                        const Belief& after) {
+  const auto a = gaussian::claimed_sigma(before);
+  const auto b = gaussian::claimed_sigma(received);
+  const auto c = gaussian::claimed_sigma(after);
+  if (!a || !b || !c) return;
+  counts_.fusion_gain_max = std::max(counts_.fusion_gain_max, 1.0 - *c / std::min(*a, *b));
+}
+
+void StaticGaussianEstimator::new_incarnation() {
+  ++incarnation_;
+  next_count_ = 1;
+}
+
+StaticGaussianEstimator::Neighbour* StaticGaussianEstimator::find(AgentId id) {
+  const auto found = std::lower_bound(neighbours_.begin(), neighbours_.end(), id,
+                                      [](const Neighbour& n, AgentId i) { return n.id < i; });
+  return found != neighbours_.end() && found->id == id ? &*found : nullptr;
+}
+
+}  // namespace hearsay

@@ -1,0 +1,82 @@
+#include "agents/metrics.hpp"
+
+#include <array>
+
+namespace hearsay {
+namespace {
+
+constexpr auto kSeries = MetricTable::series;
+constexpr auto kScalar = MetricTable::scalar;
+constexpr auto kMean = Aggregate::mean;
+constexpr auto kRms = Aggregate::rms;
+
+constexpr std::array kMetrics = {
+    MetricInfo{"rms_error_m", kSeries, kRms, false, "√(eᵀe/n): error of the estimate an axis, m"},
+    MetricInfo{"claimed_sigma_m", kSeries, kRms, false,
+               "√(tr Σ/n): standard deviation an axis the belief claims, m"},
+    MetricInfo{"true_sigma_m", kSeries, kRms, true,
+               "√(tr P/n): true standard deviation an axis, by the ledger, m"},
+    MetricInfo{"nees", kSeries, kMean, false,
+               "eᵀΩe: normalised estimation error squared, mean n if consistent"},
+    MetricInfo{"ledger_anees", kSeries, kMean, true,
+               "tr(Ω P)/n: the ANEES that the ledger predicts, 1 if consistent"},
+    MetricInfo{"ledger_nees", kSeries, kMean, true,
+               "eᵀP⁻¹e: error against the ledger's true covariance, χ² with n degrees of freedom"},
+    MetricInfo{"kl_to_central_nats", kSeries, kMean, false,
+               "D(central ‖ local): divergence from the central filter, nats"},
+    MetricInfo{"entropy_nats", kSeries, kMean, false, "differential entropy of the belief, nats"},
+    MetricInfo{"multiplicity_mean", kSeries, kMean, true,
+               "how often the average measurement in the belief is counted"},
+    MetricInfo{"multiplicity_max", kSeries, kMean, true, "how often the most repeated one is"},
+    MetricInfo{"multiplicity_share", kSeries, kMean, true,
+               "share of the measurements that are counted more than once"},
+    MetricInfo{"reach_gap", kSeries, kMean, true,
+               "relative distance from a central filter over all measurements that can have "
+               "travelled here"},
+    MetricInfo{"not_positive", kSeries, kMean, false,
+               "1 where the belief's information matrix is indefinite or overflown"},
+    MetricInfo{"anees", MetricTable::derived, kMean, false,
+               "mean of nees over repetitions, divided by n"},
+    MetricInfo{"distance_error_m", kScalar, kMean, false,
+               "distance of estimate and truth at the end, mean over subjects, m"},
+    MetricInfo{"final_claimed_sigma_m", kScalar, kRms, false,
+               "claimed standard deviation an axis at the end, rms over subjects, m"},
+    MetricInfo{"reach_gap_max", kScalar, kMean, true, "largest reach_gap of all samples"},
+    MetricInfo{"not_positive_share", kScalar, kMean, false,
+               "share of samples with an indefinite or overflown belief"},
+    MetricInfo{"fusion_gain_max", kScalar, kMean, false,
+               "largest 1 − σ/min(σ own, σ heard) of claimed σ over all fusions"},
+    MetricInfo{"fusions", kScalar, kMean, false, "beliefs fused"},
+    MetricInfo{"fusions_skipped", kScalar, kMean, false,
+               "beliefs heard that the rule could not use"},
+    MetricInfo{"messages_refused", kScalar, kMean, false,
+               "messages malformed, or older than known"},
+    MetricInfo{"measurements", kScalar, kMean, false, "measurements made"},
+    MetricInfo{"packets", kScalar, kMean, false, "packets handed to the radio"},
+    MetricInfo{"bytes_sent", kScalar, kMean, false, "bytes sent, headers included"},
+    MetricInfo{"air_time_s", kScalar, kMean, false, "time the transmitter was sending, s"},
+    MetricInfo{"packets_delivered", kScalar, kMean, false, "packets × receivers that arrived"},
+    MetricInfo{"packets_lost", kScalar, kMean, false, "packets × receivers lost on the channel"},
+    MetricInfo{"packets_out_of_range", kScalar, kMean, false,
+               "packets addressed to somebody out of reach"},
+    MetricInfo{"packets_queue_full", kScalar, kMean, false,
+               "packets × receivers dropped at the transmitter"},
+    MetricInfo{"packets_in_flight_at_end", kScalar, kMean, false,
+               "packets × receivers under way when the run ended"},
+    MetricInfo{"log_skipped_truth_gap", kScalar, kMean, false,
+               "log lines skipped: no truth near enough in time"},
+    MetricInfo{"log_skipped_unknown_barcode", kScalar, kMean, false,
+               "log lines skipped: barcode not in the list"},
+    MetricInfo{"log_skipped_robot_sighting", kScalar, kMean, false,
+               "log lines not used: another robot was seen"},
+    MetricInfo{"log_skipped_bad_range", kScalar, kMean, false,
+               "log lines skipped: range not positive"},
+    MetricInfo{"state_dimension", kScalar, kMean, false, "n, of agent −1"},
+};
+static_assert(kMetrics[static_cast<std::size_t>(Metric::not_positive)].name == "not_positive");
+
+}  // namespace
+
+std::span<const MetricInfo> metrics() { return kMetrics; }
+
+}  // namespace hearsay

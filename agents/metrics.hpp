@@ -1,0 +1,48 @@
+// The names of what a run records, with unit and meaning: `hearsay list metrics`.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+namespace hearsay {
+
+/// Where a metric's values stand in the database.
+enum class MetricTable {
+  series,   ///< over time: agent, subject, instant
+  scalar,   ///< once a run and agent
+  derived,  ///< computed by claims and comparisons from recorded ones
+};
+
+/// How repetitions of a metric are summed up unless a claim says otherwise.
+enum class Aggregate { mean, rms };
+
+struct MetricInfo {
+  std::string_view name;
+  MetricTable table;
+  Aggregate aggregate;
+  bool ledger;               ///< needs record.ledger = "on"
+  std::string_view meaning;  ///< with unit
+};
+
+/// All metrics of the built-in agents, series first.
+std::span<const MetricInfo> metrics();
+
+/// Positions in metrics() of the series; `Metric::nees` is metrics()[3].
+enum class Metric {
+  rms_error_m,
+  claimed_sigma_m,
+  true_sigma_m,
+  nees,
+  ledger_anees,
+  ledger_nees,
+  kl_to_central_nats,
+  entropy_nats,
+  multiplicity_mean,
+  multiplicity_max,
+  multiplicity_share,
+  reach_gap,
+  not_positive,
+};
+inline constexpr int series_metric_count = 13;
+
+}  // namespace hearsay

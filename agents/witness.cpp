@@ -1,0 +1,200 @@
+#include "agents/witness.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "sim/kernel/error.hpp"
+
+namespace hearsay {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+double& at(std::array<double, series_metric_count>& values, Metric metric) {
+  return values[static_cast<std::size_t>(metric)];
+}
+
+bool is_ledger(Metric metric) { return metrics()[static_cast<std::size_t>(metric)].ledger; }
+
+}  // namespace
+
+Witness::Witness(Simulation& simulation, Options options)
+    : simulation_(simulation), options_(std::move(options)) {
+  require(!options_.subjects.empty(), "a witness needs a subject");
+  dimension_ = static_cast<int>(options_.subjects.front().truth.size());
+  Record& record = simulation_.record();
+  for (std::size_t m = 0; m < series_metric_count; ++m) {
+    metric_names_[m] = record.name(metrics()[m].name);
+  }
+  for (const Metric metric : options_.series) wanted_[static_cast<std::size_t>(metric)] = true;
+  for (const Subject& subject : options_.subjects) {
+    require(static_cast<int>(subject.truth.size()) == dimension_,
+            "subjects of one run differ in dimension");
+    subject_names_.push_back(record.name(subject.name));
+    books_.emplace_back(dimension_);
+    central_.push_back({gaussian::Belief::unknown(dimension_), Ledger{}});
+  }
+}
+
+std::size_t Witness::measured(int subject, const gaussian::Belief& information) {
+  const auto s = static_cast<std::size_t>(subject);
+  central_[s].belief += information;
+  ++measurements_;
+  if (!options_.ledger) return 0;
+  const std::size_t index = books_[s].add(information);
+  central_[s].ledger.measured(index);
+  return index;
+}
+
+void Witness::watch(AgentId agent, const StaticGaussianEstimator& estimator) {
+  watched_.push_back({.agent = agent, .estimator = &estimator});
+}
+
+void Witness::start() { schedule_sample(Time()); }
+
+void Witness::schedule_sample(Time at) {
+  if (at > simulation_.end()) return;
+  simulation_.schedule(at, Phase::observe, [this, at] {
+    sample();
+    schedule_sample(at + options_.series_period);
+  });
+}
+
+void Witness::sample() {
+  last_sample_ = simulation_.now();
+  const int subjects = static_cast<int>(options_.subjects.size());
+  for (int s = 0; s < subjects; ++s) {
+    keep(central_agent, s, measure(central_[static_cast<std::size_t>(s)], s, true));
+  }
+  for (Watched& watched : watched_) {
+    for (int s = 0; s < subjects; ++s) sample(watched, s);
+  }
+}
+
+void Witness::sample(Watched& watched, int subject) {
+  Values values = measure(watched.estimator->tracked(subject), subject, false);
+  ++watched.samples;
+  if (at(values, Metric::not_positive) != 0.0) ++watched.not_positive;
+  if (options_.ledger) {
+    watched.reach_gap_max = std::max(watched.reach_gap_max, at(values, Metric::reach_gap));
+  }
+  const gaussian::Belief& belief = watched.estimator->tracked(subject).belief;
+  if (!watched.overflow_told &&
+      gaussian::definiteness(belief) == gaussian::Definiteness::overflow) {
+    watched.overflow_told = true;
+    simulation_.record().event(simulation_.now(), watched.agent, "belief overflow",
+                               options_.subjects[static_cast<std::size_t>(subject)].name);
+  }
+  keep(watched.agent, subject, values);
+}
+
+void Witness::keep(AgentId agent, int subject, const Values& values) {
+  Record& record = simulation_.record();
+  for (const Metric metric : options_.series) {
+    if (is_ledger(metric) && !options_.ledger) continue;
+    // The central filter counts each measurement once by construction; its ledger says nothing.
+    if (is_ledger(metric) && agent == central_agent) continue;
+    const auto m = static_cast<std::size_t>(metric);
+    record.series(simulation_.now(), agent, subject_names_[static_cast<std::size_t>(subject)],
+                  metric_names_[m], values[m], is_ledger(metric) ? Origin::ledger : Origin::run);
+  }
+}
+
+Witness::Values Witness::measure(const TrackedBelief& tracked, int subject, bool central) const {
+  Values values;
+  values.fill(kNone);
+  const gaussian::Belief& belief = tracked.belief;
+  const gaussian::Vector x = truth(subject);
+  if (const auto estimate = gaussian::state(belief)) {
+    at(values, Metric::rms_error_m) = (*estimate - x).norm() / std::sqrt(double(dimension_));
+  }
+  at(values, Metric::claimed_sigma_m) = gaussian::claimed_sigma(belief).value_or(kNone);
+  at(values, Metric::nees) = gaussian::nees(belief, x).value_or(kNone);
+  if (wants(Metric::entropy_nats)) {
+    at(values, Metric::entropy_nats) = gaussian::entropy_nats(belief).value_or(kNone);
+  }
+  if (wants(Metric::kl_to_central_nats)) {
+    const gaussian::Belief& reference = central_[static_cast<std::size_t>(subject)].belief;
+    at(values, Metric::kl_to_central_nats) =
+        gaussian::kl_divergence_nats(reference, belief).value_or(kNone);
+  }
+  const gaussian::Definiteness kind = gaussian::definiteness(belief);
+  at(values, Metric::not_positive) =
+      kind == gaussian::Definiteness::indefinite || kind == gaussian::Definiteness::overflow;
+  if (options_.ledger && !central) measure_ledger(tracked, subject, values);
+  return values;
+}
+
+void Witness::measure_ledger(const TrackedBelief& tracked, int subject, Values& values) const {
+  const MeasurementBook& book = books_[static_cast<std::size_t>(subject)];
+  const gaussian::Belief& belief = tracked.belief;
+  const Multiplicity counted = multiplicity(tracked.ledger);
+  at(values, Metric::multiplicity_mean) = counted.mean;
+  at(values, Metric::multiplicity_max) = counted.max;
+  at(values, Metric::multiplicity_share) = counted.share_above_one;
+  at(values, Metric::reach_gap) = reach_gap(belief, tracked.ledger, book);
+  if (!wants(Metric::true_sigma_m) && !wants(Metric::ledger_anees) && !wants(Metric::ledger_nees)) {
+    return;
+  }
+  const auto P = true_covariance(belief.omega, tracked.ledger, book);
+  if (!P) return;
+  const double n = dimension_;
+  at(values, Metric::true_sigma_m) = std::sqrt(P->trace() / n);
+  at(values, Metric::ledger_anees) = belief.omega.cwiseProduct(*P).sum() / n;
+  const auto estimate = gaussian::state(belief);
+  const Eigen::LLT<gaussian::Matrix> llt(*P);
+  if (!estimate || llt.info() != Eigen::Success) return;
+  const gaussian::Vector e = *estimate - truth(subject);
+  at(values, Metric::ledger_nees) = e.dot(gaussian::Vector(llt.solve(e)));
+}
+
+gaussian::Vector Witness::truth(int subject) const {
+  const std::vector<double>& values = options_.subjects[static_cast<std::size_t>(subject)].truth;
+  gaussian::Vector x(dimension_);
+  for (int i = 0; i < dimension_; ++i) x(i) = values[static_cast<std::size_t>(i)];
+  return x;
+}
+
+void Witness::finish() {
+  if (last_sample_ != simulation_.now()) sample();
+  Record& record = simulation_.record();
+  record.scalar(central_agent, record.name("state_dimension"), dimension_);
+  record.scalar(central_agent, record.name("measurements"), static_cast<double>(measurements_));
+  finish({.agent = central_agent, .estimator = nullptr});
+  for (const Watched& watched : watched_) finish(watched);
+}
+
+void Witness::finish(const Watched& watched) {
+  Record& record = simulation_.record();
+  const auto scalar = [&](const char* name, double value, Origin origin = Origin::run) {
+    record.scalar(watched.agent, record.name(name), value, origin);
+  };
+  double distance = 0.0, variance = 0.0;
+  for (std::size_t s = 0; s < central_.size(); ++s) {
+    const int subject = static_cast<int>(s);
+    const gaussian::Belief& belief =
+        watched.estimator ? watched.estimator->tracked(subject).belief : central_[s].belief;
+    const auto estimate = gaussian::state(belief);
+    const double sigma = gaussian::claimed_sigma(belief).value_or(kNone);
+    distance += estimate ? (*estimate - truth(subject)).norm() : kNone;
+    variance += sigma * sigma;
+  }
+  const auto subjects = static_cast<double>(central_.size());
+  scalar("distance_error_m", distance / subjects);
+  scalar("final_claimed_sigma_m", std::sqrt(variance / subjects));
+  if (!watched.estimator) return;
+  scalar("not_positive_share",
+         static_cast<double>(watched.not_positive) / static_cast<double>(watched.samples));
+  if (options_.ledger) scalar("reach_gap_max", watched.reach_gap_max, Origin::ledger);
+  const StaticGaussianEstimator::Counts& counts = watched.estimator->counts();
+  scalar("measurements", static_cast<double>(counts.measurements));
+  scalar("fusions", static_cast<double>(counts.fusions));
+  scalar("fusions_skipped", static_cast<double>(counts.skipped));
+  scalar("messages_refused", static_cast<double>(counts.refused));
+  scalar("fusion_gain_max", counts.fusion_gain_max);
+}
+
+}  // namespace hearsay

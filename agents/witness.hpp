@@ -1,0 +1,85 @@
+// The omniscient witness of a run: it hears every measurement at once, keeps the central belief and
+// the book of measurements, and compares what each agent believes with the truth, with the central
+// belief and with the ledger. No agent can ask it anything.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "agents/estimators/static_gaussian.hpp"
+#include "agents/metrics.hpp"
+#include "sim/kernel/simulation.hpp"
+
+namespace hearsay {
+
+/// A static state that agents estimate, and its true value (n numbers).
+struct Subject {
+  std::string name;
+  std::vector<double> truth;
+};
+
+class Witness {
+ public:
+  struct Options {
+    std::vector<Subject> subjects;  ///< all of the same dimension n
+    std::vector<Metric> series;     ///< kept over time
+    Duration series_period;         ///< > 0: samples at 0, period, … and at the end
+    bool ledger = true;             ///< keep ledgers and what follows from them
+  };
+  /// `simulation` must outlive the witness.
+  Witness(Simulation& simulation, Options options);
+
+  /// An agent made a measurement. @return its index in the subject's book.
+  std::size_t measured(int subject, const gaussian::Belief& information);
+
+  /// From now on `agent`'s beliefs are sampled. Agents in ascending number.
+  void watch(AgentId agent, const StaticGaussianEstimator& estimator);
+
+  /// For estimators: where their ledgers come from; nullptr if ledgers are off.
+  LedgerPool* ledgers() { return options_.ledger ? &pool_ : nullptr; }
+
+  /// Schedules the samples up to the end of the run. Once, before it starts.
+  void start();
+  /// Takes the last sample (unless it was due at this very instant) and leaves final values.
+  void finish();
+
+ private:
+  struct Watched {
+    AgentId agent;
+    const StaticGaussianEstimator* estimator;
+    double reach_gap_max = 0.0;
+    std::uint64_t samples = 0;
+    std::uint64_t not_positive = 0;
+    bool overflow_told = false;
+  };
+  using Values = std::array<double, series_metric_count>;
+
+  void schedule_sample(Time at);
+  void sample();
+  void sample(Watched& watched, int subject);
+  Values measure(const TrackedBelief& tracked, int subject, bool central) const;
+  void measure_ledger(const TrackedBelief& tracked, int subject, Values& values) const;
+  void keep(AgentId agent, int subject, const Values& values);
+  void finish(const Watched& watched);
+  bool wants(Metric metric) const { return wanted_[static_cast<std::size_t>(metric)]; }
+  gaussian::Vector truth(int subject) const;
+
+  Simulation& simulation_;
+  Options options_;
+  int dimension_;
+  std::array<bool, series_metric_count> wanted_{};
+  std::array<NameId, series_metric_count> metric_names_{};
+  std::vector<NameId> subject_names_;
+  LedgerPool pool_;
+  std::vector<MeasurementBook> books_;  // by subject
+  std::vector<TrackedBelief> central_;  // by subject
+  std::vector<Watched> watched_;
+  std::uint64_t measurements_ = 0;
+  std::optional<Time> last_sample_;
+};
+
+}  // namespace hearsay

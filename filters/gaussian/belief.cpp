@@ -1,0 +1,219 @@
+#include "filters/gaussian/belief.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "filters/gaussian/symmetric.hpp"
+#include "sim/kernel/error.hpp"
+#include "sim/math/functions.hpp"
+
+namespace hearsay::gaussian {
+namespace {
+
+constexpr double log_2 = 0.69314718055994530942;
+constexpr double log_2_pi_e = 2.83787706640934548356;
+
+/// Lower L and powers of two D (a diagonal) with Ω = D⁻¹LLᵀD⁻¹.
+struct Factor {
+  Matrix l;
+  Vector d;
+};
+
+std::optional<Factor> factor(const Matrix& omega) {
+  const Scaled scaled = scale(omega);
+  const auto l = cholesky(scaled);
+  if (!l) return std::nullopt;
+  return Factor{*l, scaled.factor};
+}
+
+/// L⁻¹D·m: the whitened m, so that gram() of it is mᵀΩ⁻¹m.
+Matrix whitened(const Factor& f, const Matrix& m) {
+  Matrix w = m;
+  scale_rows(w, f.d);
+  solve_lower(f.l, w);
+  return w;
+}
+
+double log_determinant(const Factor& f) {
+  double sum = 0.0;
+  int exponents = 0;
+  for (Eigen::Index i = 0; i < f.l.rows(); ++i) {
+    int exponent = 0;
+    std::frexp(f.d(i), &exponent);  // ½·2^exponent
+    exponents += exponent - 1;
+    sum += math::log(f.l(i, i));
+  }
+  return 2.0 * (sum - log_2 * exponents);
+}
+
+/// μ = Ω⁻¹ξ.
+std::optional<Vector> mean(const Factor& f, const Vector& xi) {
+  Matrix x = whitened(f, xi);
+  solve_lower_transposed(f.l, x);
+  scale_rows(x, f.d);
+  if (!x.allFinite()) return std::nullopt;
+  return Vector(x);
+}
+
+/// eᵀΩe.
+double quadratic(const Matrix& omega, const Vector& e) {
+  double sum = 0.0;
+  for (Eigen::Index j = 0; j < e.size(); ++j) {
+    for (Eigen::Index i = 0; i < e.size(); ++i) sum += e(i) * omega(i, j) * e(j);
+  }
+  return sum;
+}
+
+std::optional<double> if_finite(double value) {
+  if (!std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+}  // namespace
+
+const char* to_string(Definiteness definiteness) {
+  switch (definiteness) {
+    case Definiteness::positive:
+      return "positive";
+    case Definiteness::singular:
+      return "singular";
+    case Definiteness::indefinite:
+      return "indefinite";
+    case Definiteness::overflow:
+      return "overflow";
+  }
+  return "unknown";
+}
+
+Belief Belief::unknown(int n) {
+  require(n >= 1 && n <= dimension_max, "Belief::unknown: the dimension must be 1 to 8");
+  return Belief{Matrix::Zero(n, n), Vector::Zero(n)};
+}
+
+Belief Belief::from_moments(const Vector& mean, const Matrix& covariance) {
+  const auto n = static_cast<int>(mean.size());
+  require(n >= 1 && n <= dimension_max, "Belief::from_moments: the dimension must be 1 to 8");
+  return measurement_information(Matrix::Identity(n, n), covariance, mean);
+}
+
+Belief& Belief::operator+=(const Belief& other) {
+  require(dimension() == other.dimension(), "Belief +=: dimensions differ");
+  omega += other.omega;
+  xi += other.xi;
+  return *this;
+}
+
+Belief& Belief::operator-=(const Belief& other) {
+  require(dimension() == other.dimension(), "Belief -=: dimensions differ");
+  omega -= other.omega;
+  xi -= other.xi;
+  return *this;
+}
+
+Belief& Belief::operator*=(double scalar) {
+  omega *= scalar;
+  xi *= scalar;
+  return *this;
+}
+
+Belief measurement_information(const Matrix& M, const Matrix& S, const Vector& z) {
+  require(M.rows() == z.size() && S.rows() == z.size() && S.cols() == z.size() && M.cols() >= 1,
+          "measurement: the shapes of M (m×n), S (m×m) and z (m) disagree");
+  require(M.allFinite() && z.allFinite(), "measurement: M and z must be finite");
+  const auto f = factor(S);
+  require(f.has_value(), "the covariance is not positive definite");
+  const Matrix w = whitened(*f, M);
+  const Matrix wz = whitened(*f, z);
+  return Belief{gram(w), w.transpose().lazyProduct(wz)};
+}
+
+Definiteness definiteness(const Belief& belief) {
+  if (!belief.xi.allFinite()) return Definiteness::overflow;
+  return scale(belief.omega).definiteness;
+}
+
+std::optional<Vector> state(const Belief& belief) {
+  if (!belief.xi.allFinite()) return std::nullopt;
+  const Scaled scaled = scale(belief.omega);
+  if (!scaled.invertible()) return std::nullopt;
+  Matrix x = belief.xi;
+  scale_rows(x, scaled.factor);
+  x = solve(scaled, x);
+  scale_rows(x, scaled.factor);
+  if (!x.allFinite()) return std::nullopt;
+  return Vector(x);
+}
+
+std::optional<Matrix> covariance(const Belief& belief) {
+  if (!belief.xi.allFinite()) return std::nullopt;
+  const auto f = factor(belief.omega);
+  if (!f) return std::nullopt;
+  const Matrix sigma = gram(whitened(*f, Matrix::Identity(f->l.rows(), f->l.cols())));
+  if (!sigma.allFinite()) return std::nullopt;
+  return sigma;
+}
+
+std::optional<double> log_determinant(const Matrix& omega) {
+  const auto f = factor(omega);
+  if (!f) return std::nullopt;
+  return log_determinant(*f);
+}
+
+std::optional<double> entropy_nats(const Belief& belief) {
+  if (!belief.xi.allFinite()) return std::nullopt;
+  const auto log_det = log_determinant(belief.omega);
+  if (!log_det) return std::nullopt;
+  return 0.5 * (belief.dimension() * log_2_pi_e - *log_det);
+}
+
+std::optional<double> kl_divergence_nats(const Belief& p, const Belief& q) {
+  require(p.dimension() == q.dimension(), "kl_divergence_nats: dimensions differ");
+  if (!p.xi.allFinite() || !q.xi.allFinite()) return std::nullopt;
+  const auto fp = factor(p.omega);
+  const auto fq = factor(q.omega);
+  if (!fp || !fq) return std::nullopt;
+  const auto mean_p = mean(*fp, p.xi);
+  const auto mean_q = mean(*fq, q.xi);
+  if (!mean_p || !mean_q) return std::nullopt;
+
+  Matrix root_q = fq->l;  // D⁻¹L of q: Ω_q = root·rootᵀ
+  scale_rows(root_q, fq->d.cwiseInverse());
+  const double trace = whitened(*fp, root_q).squaredNorm();
+  const double distance = quadratic(q.omega, *mean_q - *mean_p);
+  const double kl =
+      0.5 * (trace - p.dimension() + distance + log_determinant(*fp) - log_determinant(*fq));
+  return if_finite(kl < 0.0 ? 0.0 : kl);  // below zero by rounding only
+}
+
+std::optional<double> nees(const Belief& belief, const Vector& truth) {
+  require(belief.dimension() == truth.size(), "nees: dimensions differ");
+  const auto mu = state(belief);
+  if (!mu) return std::nullopt;
+  return if_finite(quadratic(belief.omega, *mu - truth));
+}
+
+std::optional<double> claimed_sigma(const Belief& belief) {
+  const auto sigma = covariance(belief);
+  if (!sigma) return std::nullopt;
+  return std::sqrt(sigma->trace() / belief.dimension());
+}
+
+PositionMeasurement range_bearing_to_position(const Pose& pose, double range_m, double bearing_rad,
+                                              const RangeBearingNoise& noise) {
+  require(range_m > 0.0, "range_bearing_to_position: the range must be positive");
+  const double c = math::cos(pose.heading_rad + bearing_rad);
+  const double s = math::sin(pose.heading_rad + bearing_rad);
+  const double along = noise.sigma_range_m * noise.sigma_range_m;
+  const double across = range_m * range_m *
+                        (noise.sigma_bearing_rad * noise.sigma_bearing_rad +
+                         noise.sigma_heading_rad * noise.sigma_heading_rad);
+  const double position = noise.sigma_position_m * noise.sigma_position_m;
+  PositionMeasurement out{Vector(2), Matrix(2, 2)};
+  out.z << pose.x_m + range_m * c, pose.y_m + range_m * s;
+  const double xy = (along - across) * c * s;
+  out.S << along * c * c + across * s * s + position, xy,  //
+      xy, along * s * s + across * c * c + position;
+  return out;
+}
+
+}  // namespace hearsay::gaussian

@@ -1,0 +1,84 @@
+#include "filters/gaussian/fusion.hpp"
+
+#include "sim/kernel/error.hpp"
+
+namespace hearsay::gaussian {
+namespace {
+
+constexpr std::string_view exact_ledger =
+    "exact for static linear-Gaussian problems while sending does not depend on measured values";
+
+constexpr std::array<RuleInfo, 6> table = {{
+    {Rule::none, "none", Sends::nothing, Memory::nothing,
+     "nothing: an agent believes only what it measured itself",
+     "always, as far as its own measurements are", exact_ledger,
+     "the reference without communication"},
+    {Rule::naive, "naive", Sends::belief, Memory::nothing,
+     "whatever is heard is news: sender and receiver share no measurement",
+     "only as long as no measurement reaches an agent twice, so not beyond a first exchange",
+     exact_ledger, "Merino 2007, eq. 3.36 without its common term"},
+    {Rule::channel, "channel", Sends::belief, Memory::last_exchanged,
+     "a tree of reliable, ordered links on which beliefs never cross",
+     "exact there; loops count twice; lost or crossing beliefs lose information, up to an "
+     "indefinite belief",
+     exact_ledger, "Merino 2007, Alg. 3.4, eq. 3.36-3.40"},
+    {Rule::channel_robust, "channel-robust", Sends::belief_less_heard, Memory::last_heard,
+     "a tree; messages may be lost, doubled, reordered or cross",
+     "exact there, up to messages under way; loops count twice and more", exact_ledger,
+     "cumulative form of Merino 2007, Alg. 3.4"},
+    {Rule::ci_det, "ci-det", Sends::belief, Memory::nothing,
+     "both beliefs are conservative; nothing about what they share",
+     "always, for any correlation; price: independent information is not added", exact_ledger,
+     "Julier & Uhlmann 1997; Merino 2007, eq. 3.43-3.46"},
+    {Rule::ci_trace, "ci-trace", Sends::belief, Memory::nothing,
+     "both beliefs are conservative; nothing about what they share; one unit on all axes",
+     "always, for any correlation; price: independent information is not added", exact_ledger,
+     "Julier & Uhlmann 1997; Merino 2007, eq. 3.43-3.46"},
+}};
+
+bool finite(const Belief& belief) { return belief.omega.allFinite() && belief.xi.allFinite(); }
+
+Coefficients weighted(const Intersection& intersection) {
+  if (intersection.skipped != nullptr) return {1.0, 0.0, 0.0, intersection.skipped};
+  return {intersection.omega, 1.0 - intersection.omega, 0.0, nullptr};
+}
+
+}  // namespace
+
+std::span<const RuleInfo> rules() { return table; }
+
+const RuleInfo& info(Rule rule) {
+  for (const RuleInfo& row : table) {
+    if (row.rule == rule) return row;
+  }
+  throw BrokenInvariant("info: a fusion rule that is not in the table");
+}
+
+std::optional<Rule> rule_by_name(std::string_view name) {
+  for (const RuleInfo& row : table) {
+    if (row.name == name) return row.rule;
+  }
+  return std::nullopt;
+}
+
+Coefficients coefficients(Rule rule, const Belief& own, const Belief& received) {
+  require(own.dimension() == received.dimension(), "coefficients: dimensions differ");
+  if (rule == Rule::none) return {1.0, 0.0, 0.0, nullptr};
+  if (!finite(own) || !finite(received)) return {1.0, 0.0, 0.0, "overflow"};
+  switch (rule) {
+    case Rule::naive:
+      return {1.0, 1.0, 0.0, nullptr};
+    case Rule::channel:
+    case Rule::channel_robust:
+      return {1.0, 1.0, 1.0, nullptr};
+    case Rule::ci_det:
+      return weighted(intersect_det(own.omega, received.omega));
+    case Rule::ci_trace:
+      return weighted(intersect_trace(own.omega, received.omega));
+    case Rule::none:
+      break;
+  }
+  throw BrokenInvariant("coefficients: a fusion rule without coefficients");
+}
+
+}  // namespace hearsay::gaussian

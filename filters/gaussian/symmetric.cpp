@@ -1,0 +1,236 @@
+#include "filters/gaussian/symmetric.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/kernel/error.hpp"
+
+namespace hearsay::gaussian {
+namespace {
+
+constexpr double singular_below = 1e-13;  // times n, of the largest eigenvalue
+
+/// e such that value lies in [½, 1)·2^e.
+int binary_exponent(double value) {
+  int e = 0;
+  std::frexp(value, &e);
+  return e;
+}
+
+/// Half of it, rounded so that value·2^(−2·half) lies in [½, 2).
+int half_exponent(double value) {
+  const int e = binary_exponent(value);
+  return (e >= 0 ? e : e - 1) / 2;
+}
+
+/// Applies the rotation of the plane (p, q) that annihilates a(p, q).
+void rotate(Matrix& a, Matrix* vectors, Eigen::Index p, Eigen::Index q) {
+  const double theta = (a(q, q) - a(p, p)) / (2.0 * a(p, q));
+  const double t = (theta >= 0 ? 1.0 : -1.0) / (std::fabs(theta) + std::sqrt(theta * theta + 1.0));
+  const double c = 1.0 / std::sqrt(t * t + 1.0);
+  const double s = t * c;
+  a(p, p) -= t * a(p, q);
+  a(q, q) += t * a(p, q);
+  a(p, q) = a(q, p) = 0.0;
+  for (Eigen::Index k = 0; k < a.rows(); ++k) {
+    if (k != p && k != q) {
+      const double kp = a(k, p);
+      const double kq = a(k, q);
+      a(k, p) = a(p, k) = c * kp - s * kq;
+      a(k, q) = a(q, k) = s * kp + c * kq;
+    }
+    if (vectors != nullptr) {
+      const double vp = (*vectors)(k, p);
+      const double vq = (*vectors)(k, q);
+      (*vectors)(k, p) = c * vp - s * vq;
+      (*vectors)(k, q) = s * vp + c * vq;
+    }
+  }
+}
+
+/// Brings a to diagonal form. It converges quadratically: about six sweeps for n = 8.
+void diagonalise(Matrix& a, Matrix* vectors) {
+  constexpr int sweeps_max = 60;
+  const double negligible = std::ldexp(a.size() > 0 ? a.cwiseAbs().maxCoeff() : 0.0, -60);
+  for (int sweep = 0; sweep < sweeps_max; ++sweep) {
+    bool rotated = false;
+    for (Eigen::Index p = 0; p < a.rows(); ++p) {
+      for (Eigen::Index q = p + 1; q < a.cols(); ++q) {
+        if (!(std::fabs(a(p, q)) > negligible)) continue;
+        rotate(a, vectors, p, q);
+        rotated = true;
+      }
+    }
+    if (!rotated) return;
+  }
+  throw BrokenInvariant("eigenvalues: the Jacobi iteration did not converge");
+}
+
+/// Factors that bring the diagonal to [½, 2); false where that cannot be a fair scale.
+bool diagonal_factors(const Matrix& omega, Vector& factor) {
+  for (Eigen::Index i = 0; i < omega.rows(); ++i) {
+    const double d = omega(i, i);
+    if (d > 0) {
+      factor(i) = std::ldexp(1.0, -half_exponent(d));
+    } else {
+      if (d < 0 || (omega.row(i).array() != 0.0).any()) return false;
+      factor(i) = 1.0;
+    }
+  }
+  return true;
+}
+
+Matrix equilibrated(const Matrix& omega, const Vector& factor) {
+  const Eigen::Index n = omega.rows();
+  Matrix out(n, n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    for (Eigen::Index i = 0; i < n; ++i) out(i, j) = omega(i, j) * factor(i) * factor(j);
+  }
+  return out;
+}
+
+void judge(Scaled& scaled, bool common_factor) {
+  const Vector values = eigenvalues(scaled.matrix);
+  const Eigen::Index n = values.size();
+  const double largest = std::max(std::fabs(values(0)), std::fabs(values(n - 1)));
+  const double threshold = static_cast<double>(n) * singular_below * largest;
+  for (Eigen::Index i = 0; i < n; ++i) scaled.rank += std::fabs(values(i)) > threshold ? 1 : 0;
+  if (values(0) < -threshold) {
+    scaled.definiteness = Definiteness::indefinite;
+  } else if (scaled.rank == n && !common_factor) {
+    scaled.definiteness = Definiteness::positive;
+  } else {
+    // What needed a common factor has a negative minor: not positive, if only by rounding.
+    scaled.definiteness = Definiteness::singular;
+    scaled.rank = std::min(scaled.rank, static_cast<int>(n) - (common_factor ? 1 : 0));
+  }
+}
+
+}  // namespace
+
+Scaled scale(const Matrix& omega) {
+  Scaled scaled;
+  if (omega.size() == 0) return scaled;
+  if (!omega.allFinite()) {
+    scaled.matrix = omega;
+    scaled.definiteness = Definiteness::overflow;
+    return scaled;
+  }
+  scaled.factor.resize(omega.rows());
+  bool fair = diagonal_factors(omega, scaled.factor);
+  if (fair) {
+    scaled.matrix = equilibrated(omega, scaled.factor);
+    // |Ω(i, j)| ≤ √(Ω(i, i)·Ω(j, j)) < 2 in any semi-definite matrix.
+    fair = scaled.matrix.cwiseAbs().maxCoeff() < 2.0;
+  }
+  if (!fair) {
+    scaled.factor.setConstant(std::ldexp(1.0, -(exponent_of(omega) / 2)));
+    scaled.matrix = equilibrated(omega, scaled.factor);
+  }
+  judge(scaled, !fair);
+  return scaled;
+}
+
+std::optional<Matrix> cholesky(const Scaled& scaled) {
+  if (scaled.definiteness != Definiteness::positive) return std::nullopt;
+  Matrix l = scaled.matrix;
+  const Eigen::Index n = l.rows();
+  for (Eigen::Index j = 0; j < n; ++j) {
+    for (Eigen::Index k = 0; k < j; ++k) {
+      for (Eigen::Index i = j; i < n; ++i) l(i, j) -= l(i, k) * l(j, k);
+    }
+    if (!(l(j, j) > 0.0)) return std::nullopt;
+    l(j, j) = std::sqrt(l(j, j));
+    for (Eigen::Index i = j + 1; i < n; ++i) l(i, j) /= l(j, j);
+    for (Eigen::Index i = 0; i < j; ++i) l(i, j) = 0.0;
+  }
+  return l;
+}
+
+void solve_lower(const Matrix& l, Matrix& x) {
+  for (Eigen::Index column = 0; column < x.cols(); ++column) {
+    for (Eigen::Index i = 0; i < x.rows(); ++i) {
+      for (Eigen::Index k = 0; k < i; ++k) x(i, column) -= l(i, k) * x(k, column);
+      x(i, column) /= l(i, i);
+    }
+  }
+}
+
+void solve_lower_transposed(const Matrix& l, Matrix& x) {
+  for (Eigen::Index column = 0; column < x.cols(); ++column) {
+    for (Eigen::Index i = x.rows() - 1; i >= 0; --i) {
+      for (Eigen::Index k = i + 1; k < x.rows(); ++k) x(i, column) -= l(k, i) * x(k, column);
+      x(i, column) /= l(i, i);
+    }
+  }
+}
+
+Matrix solve(const Scaled& scaled, const Matrix& rhs) {
+  require(scaled.invertible(), "solve: the matrix is singular");
+  Matrix x = rhs;
+  if (const auto l = cholesky(scaled)) {
+    solve_lower(*l, x);
+    solve_lower_transposed(*l, x);
+    return x;
+  }
+  const Eigenpairs e = eigenpairs(scaled.matrix);
+  Matrix y = e.vectors.transpose().lazyProduct(x);
+  for (Eigen::Index i = 0; i < y.rows(); ++i) y.row(i) /= e.values(i);
+  x = e.vectors.lazyProduct(y);
+  return x;
+}
+
+void scale_rows(Matrix& m, const Vector& factor) {
+  for (Eigen::Index j = 0; j < m.cols(); ++j) {
+    for (Eigen::Index i = 0; i < m.rows(); ++i) m(i, j) *= factor(i);
+  }
+}
+
+Matrix times_power_of_two(const Matrix& m, int exponent) {
+  // In two factors: 2^±1074 itself is out of range.
+  const double half = std::ldexp(1.0, exponent / 2);
+  const double rest = std::ldexp(1.0, exponent - exponent / 2);
+  return (m * half) * rest;
+}
+
+int exponent_of(const Matrix& matrix) {
+  return matrix.size() == 0 ? 0 : binary_exponent(matrix.cwiseAbs().maxCoeff());
+}
+
+Matrix gram(const Matrix& w) {
+  const Eigen::Index n = w.cols();
+  Matrix out(n, n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    for (Eigen::Index i = 0; i <= j; ++i) {
+      double sum = 0.0;
+      for (Eigen::Index k = 0; k < w.rows(); ++k) sum += w(k, i) * w(k, j);
+      out(i, j) = out(j, i) = sum;
+    }
+  }
+  return out;
+}
+
+Eigenpairs eigenpairs(const Matrix& symmetric) {
+  Matrix a = symmetric;
+  Eigenpairs out;
+  out.vectors = Matrix::Identity(a.rows(), a.cols());
+  diagonalise(a, &out.vectors);
+  out.values = a.diagonal();
+  for (Eigen::Index i = 1; i < out.values.size(); ++i) {
+    for (Eigen::Index k = i; k > 0 && out.values(k) < out.values(k - 1); --k) {
+      std::swap(out.values(k), out.values(k - 1));
+      out.vectors.col(k).swap(out.vectors.col(k - 1));
+    }
+  }
+  return out;
+}
+
+Vector eigenvalues(const Matrix& symmetric) {
+  Matrix a = symmetric;
+  diagonalise(a, nullptr);
+  Vector values = a.diagonal();
+  std::sort(values.data(), values.data() + values.size());
+  return values;
+}
+
+}  // namespace hearsay::gaussian

@@ -1,0 +1,85 @@
+// The rumour ledger: how often each measurement is counted in a belief.
+//
+// Out of band, beside each belief, the simulator carries the weight w_k of every measurement k in
+// it: 1 when used once, k when counted k times, fractions under covariance intersection, negative
+// when information that was never there is taken away. Weights are combined with the coefficients
+// of the fusion rule itself. For static linear-Gaussian problems without prior
+//     Ω = Σ w_k M_kᵀS_k⁻¹M_k   and   P_true = Ω⁻¹ (Σ w_k² M_kᵀS_k⁻¹M_k) Ω⁻¹,
+// so the true covariance of the estimate is known without Monte Carlo.
+//
+// Beside the weights it carries, independently of them, the set of measurements that can have
+// travelled here at all (`reach`).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "filters/gaussian/belief.hpp"
+
+namespace hearsay {
+
+/// All measurements of one subject in a run, in the order in which they were made.
+class MeasurementBook {
+ public:
+  explicit MeasurementBook(int dimension) : dimension_(dimension) {}
+  /// @return the measurement's index, from 0.
+  std::size_t add(const gaussian::Belief& information);
+  std::size_t size() const { return count_; }
+  int dimension() const { return dimension_; }
+  /// Σ over k of weights[k] · information k; weights beyond the end count as zero.
+  gaussian::Belief weighted_sum(std::span<const double> weights) const;
+  /// Σ over the k with chosen[k] ≠ 0: what a central filter over these measurements believes.
+  gaussian::Belief sum_over(std::span<const std::uint8_t> chosen) const;
+  /// Σ (scale·w_k)² M_kᵀS_k⁻¹M_k (n×n). A scale keeps the squares of huge weights finite.
+  gaussian::Matrix weighted_square(std::span<const double> weights, double scale = 1.0) const;
+
+ private:
+  int dimension_;
+  std::size_t count_ = 0;
+  std::vector<double> information_;  // upper triangle of Ω by rows, then ξ, for each measurement
+};
+
+/// The weights and the reach of one belief. Grows with the highest measurement it has met.
+class Ledger {
+ public:
+  /// Measurement `index` was used once, directly (its weight grows by one).
+  void measured(std::size_t index);
+  /// this = a·this + b·received − c·common; reach = union of this and received. `common` may be
+  /// nullptr (nothing in common yet) and is not looked at for c = 0. No allocation once this ledger
+  /// has the capacity. @throws BrokenInvariant if `common` is this ledger itself.
+  void combine(double a, double b, const Ledger& received, double c, const Ledger* common);
+  void clear();
+
+  std::span<const double> weights() const { return weights_; }
+  /// 1 where measurement k can have contributed to this belief, else 0.
+  std::span<const std::uint8_t> reach() const { return reach_; }
+
+ private:
+  std::vector<double> weights_;
+  std::vector<std::uint8_t> reach_;
+};
+
+/// Over the measurements with |w| > 1e-12.
+struct Multiplicity {
+  double mean = 0.0;  ///< NaN if there is none
+  double max = 0.0;
+  double share_above_one = 0.0;  ///< share with w > 1 + 1e-9
+  std::size_t measurements = 0;
+};
+Multiplicity multiplicity(const Ledger& ledger);
+
+/// P_true of a belief with information matrix `omega` under `ledger` (n×n); nothing if Ω is
+/// singular or anything is not finite. Also for an indefinite Ω: the error of what its user
+/// computes.
+std::optional<gaussian::Matrix> true_covariance(const gaussian::Matrix& omega, const Ledger& ledger,
+                                                const MeasurementBook& book);
+
+/// The central filter over exactly the measurements in `ledger.reach()`, and how far `belief` is
+/// from it: max(‖ΔΩ‖/‖Ω‖, ‖Δξ‖/‖ξ‖), Frobenius, relative to the central filter; 0 if both are
+/// empty, infinite if the belief is not finite or only the central filter is empty.
+double reach_gap(const gaussian::Belief& belief, const Ledger& ledger, const MeasurementBook& book);
+
+}  // namespace hearsay

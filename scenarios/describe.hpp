@@ -1,0 +1,147 @@
+// What a scenario file may say: one description of each struct, for every purpose.
+//
+// describe(visitor, struct) names each member once, with the values it may take and what it means.
+// A visitor reads TOML into the members, lists the keys, or writes the members out:
+//   visitor.field(key, member, allowed, meaning)   a value
+//   visitor.table(key, member, meaning)            a struct, an optional one, or a vector of them
+//   visitor.names()                                names that a program adds to what files may say
+// Combinations of values are checked elsewhere (checks.cpp).
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "filters/gaussian/fusion.hpp"
+#include "scenarios/loader.hpp"
+#include "scenarios/reading.hpp"
+#include "scenarios/scenario.hpp"
+
+namespace hearsay {
+
+inline std::vector<std::string> fusion_names() {
+  std::vector<std::string> names;
+  for (const auto& rule : gaussian::rules()) names.emplace_back(rule.name);
+  return names;
+}
+
+template <class V>
+void describe(V& v, TargetSpec& s) {
+  v.field("name", s.name, anything(), "its name in records; default target<i>");
+  v.field("position_m", s.position_m, anything(), "where it is: 2 coordinates");
+}
+
+template <class V>
+void describe(V& v, LogSpec& s) {
+  v.field("kind", s.kind, one_of({"mrclam"}), "format of the data set");
+  v.field("directory", s.directory, anything(),
+          "where the data set lies; relative to the scenario file, or with --set as given");
+  v.field("truth_gap_max_s", s.truth_gap_max_s, time_span(false),
+          "measurements in wider gaps of the truth are skipped and counted");
+}
+
+template <class V>
+void describe(V& v, WorldSpec& s) {
+  v.table("targets", s.targets, "what there is to be found");
+  v.table("log", s.log, "a recorded data set instead of targets and synthetic sensors");
+}
+
+template <class V>
+void describe(V& v, LossSpec& s) {
+  v.field("model", s.model, one_of({"none", "bernoulli"}), "how packets get lost");
+  v.field("probability", s.probability, between(0.0, 1.0), "of losing a packet on a link");
+}
+
+template <class V>
+void describe(V& v, RadioSpec& s) {
+  v.field("topology", s.topology, one_of({"line", "ring", "star", "full", "edges", "disk"}),
+          "who hears whom");
+  v.field("edges", s.edges, anything(), "for \"edges\": pairs of agents, by number or name");
+  v.field("range_m", s.range_m, at_least(0.0), "for \"disk\": who is nearer hears");
+  Allowed rate = greater_than_zero();
+  rate.finest = 1e-3;
+  v.field("rate_bps", s.rate_bps, rate, "bits a second of a transmitter");
+  v.field("header_bytes", s.header_bytes, between(0, 65535), "added to each packet on the air");
+  v.field("queue_packets_max", s.queue_packets_max, between(1, 1e6),
+          "packets waiting or being sent at a transmitter");
+  v.field("latency_s", s.latency_s, time_span(true), "from the last bit sent to arrival");
+  v.table("loss", s.loss, "how packets get lost");
+}
+
+template <class V>
+void describe(V& v, CircleSpec& s) {
+  v.field("center_m", s.center_m, anything(), "2 coordinates");
+  v.field("radius_m", s.radius_m, greater_than_zero(), "agent k of n stands at angle 2πk/n");
+}
+
+template <class V>
+void describe(V& v, SensorSpec& s) {
+  v.field("kind", s.kind, one_of({"none", "position", "log"}), "what is measured");
+  v.field("period_s", s.period_s, time_span(false), "time between looks");
+  v.field("start_s", s.start_s, time_span(true), "first look");
+  v.field("end_s", s.end_s, time_span(true), "no look after; default: the end of the run");
+  v.field("sigma_m", s.sigma_m, greater_than_zero(), "position: noise in every direction");
+  v.field("sigma_along_m", s.sigma_along_m, greater_than_zero(),
+          "position: noise along the line of sight, instead of sigma_m");
+  v.field("sigma_across_m", s.sigma_across_m, greater_than_zero(),
+          "position: noise across the line of sight, with sigma_along_m");
+  v.field("sigma_range_m", s.sigma_range_m, greater_than_zero(), "log: noise of the range");
+  v.field("sigma_bearing_rad", s.sigma_bearing_rad, greater_than_zero(),
+          "log: noise of the bearing");
+  v.field("sigma_heading_rad", s.sigma_heading_rad, at_least(0.0),
+          "log: uncertainty of the robot's heading");
+  v.field("sigma_position_m", s.sigma_position_m, at_least(0.0),
+          "log: uncertainty of the robot's position, per axis");
+}
+
+template <class V>
+void describe(V& v, EstimatorSpec& s) {
+  v.field("kind", s.kind, one_of({"static-gaussian"}), "what a belief is");
+  v.field("fusion", s.fusion, one_of(fusion_names()), "how a belief that was heard is taken in");
+}
+
+template <class V>
+void describe(V& v, TalkSpec& s) {
+  v.field("policy", s.policy, one_of({"periodic", "never"}), "when to send");
+  v.field("period_s", s.period_s, time_span(false), "time between sendings");
+  v.field("phase", s.phase, one_of({"random", "staggered", "together"}),
+          "first sending: at random, agent i of n at i·period/n, or all at once");
+  v.field("phase_s", s.phase_s, time_span(true), "first sending of this agent, below the period");
+}
+
+template <class V>
+void describe(V& v, AgentSpec& s) {
+  v.field("name", s.name, anything(), "default <kind><i>; with count > 1 a number is appended");
+  v.field("kind", s.kind, one_of(v.names().agent_kinds), "class of the agent");
+  Allowed count = between(1, 1e6);
+  count.note = "a scenario needs at least one agent";
+  v.field("count", s.count, count, "how many such agents");
+  v.field("position_m", s.position_m, anything(), "where it stands: 2 coordinates");
+  v.table("circle", s.circle, "the entry's agents stand on a circle, instead of position_m");
+  v.table("sensor", s.sensor, "what it measures");
+  v.table("estimator", s.estimator, "what it believes");
+  v.table("talk", s.talk, "what it says when");
+  v.field("parameters", s.parameters, anything(), "numbers for agents of a user's program");
+}
+
+template <class V>
+void describe(V& v, RecordSpec& s) {
+  v.field("series", s.series, one_of_if_known(v.names().metrics), "metrics kept over time");
+  v.field("series_period_s", s.series_period_s, time_span(false), "time between samples");
+  v.field("messages", s.messages, one_of({"all", "counts"}), "each packet's fate, or sums only");
+  v.field("ledger", s.ledger, one_of({"on", "off"}), "how often measurements were counted");
+}
+
+template <class V>
+void describe(V& v, Scenario& s) {
+  v.field("duration_s", s.duration_s, time_span(false),
+          "how long the run lasts; default with a log: its span");
+  v.field("seed", s.seed, at_least(0), "of every random draw");
+  v.field("events_max", s.events_max, at_least(1), "the run fails after so many events");
+  v.table("world", s.world, "what is true");
+  v.table("radio", s.radio, "how agents hear one another");
+  v.table("agents", s.agents, "at least one [[agents]]");
+  v.table("record", s.record, "what the run leaves behind");
+}
+
+}  // namespace hearsay

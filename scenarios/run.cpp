@@ -1,0 +1,301 @@
+#include "scenarios/run.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "sim/kernel/error.hpp"
+
+namespace hearsay {
+namespace {
+
+gaussian::Belief information_of(const mrclam::Sighting& sighting, const SensorSpec& spec) {
+  const gaussian::PositionMeasurement measured = gaussian::range_bearing_to_position(
+      {sighting.pose.x_m, sighting.pose.y_m, sighting.pose.heading_rad}, sighting.range_m,
+      sighting.bearing_rad,
+      {.sigma_range_m = spec.sigma_range_m,
+       .sigma_bearing_rad = spec.sigma_bearing_rad,
+       .sigma_heading_rad = spec.sigma_heading_rad,
+       .sigma_position_m = spec.sigma_position_m});
+  const gaussian::Matrix identity = gaussian::Matrix::Identity(2, 2);
+  return gaussian::measurement_information(identity, measured.S, measured.z);
+}
+
+std::vector<PositionSensor> position_sensors(const AgentSpec& spec, const WorldSpec& world,
+                                             const std::optional<std::array<double, 2>>& place) {
+  std::vector<PositionSensor> sensors;
+  if (spec.sensor.kind != "position") return sensors;
+  const double along = spec.sensor.sigma_m.value_or(spec.sensor.sigma_along_m.value_or(1.0));
+  const double across = spec.sensor.sigma_m.value_or(spec.sensor.sigma_across_m.value_or(1.0));
+  for (const TargetSpec& target : world.targets) {
+    const std::array target_m{target.position_m.at(0), target.position_m.at(1)};
+    const std::array<double, 2> sensor_m = place.value_or(std::array{0.0, 0.0});
+    if (along != across && sensor_m == target_m) {
+      throw InputError("agent at the place of target '" + target.name +
+                       "' has no line of sight to it; move it or give sensor.sigma_m");
+    }
+    sensors.emplace_back(PositionSensor::Options{.sensor_m = sensor_m,
+                                                 .target_m = target_m,
+                                                 .sigma_along_m = along,
+                                                 .sigma_across_m = across});
+  }
+  return sensors;
+}
+
+Topology topology_of(const Scenario& scenario,
+                     const std::vector<std::optional<std::array<double, 2>>>& places) {
+  const RadioSpec& radio = scenario.radio;
+  const int agents = scenario.agent_count();
+  if (radio.topology == "line") return Topology::line(agents);
+  if (radio.topology == "ring") return Topology::ring(agents);
+  if (radio.topology == "star") return Topology::star(agents);
+  if (radio.topology == "full") return Topology::full(agents);
+  if (radio.topology == "edges") {
+    std::vector<std::pair<AgentId, AgentId>> edges;
+    for (const auto& [a, b] : radio.edges) edges.emplace_back(a, b);
+    return Topology::edges(agents, edges);
+  }
+  std::vector<std::array<double, 3>> positions;
+  for (const auto& place : places) positions.push_back({place.value()[0], place.value()[1], 0.0});
+  return Topology::disk(positions, radio.range_m);
+}
+
+std::vector<Metric> metrics_of(const RecordSpec& record) {
+  std::vector<Metric> wanted;
+  for (int m = 0; m < series_metric_count; ++m) {
+    const std::string_view name = metrics()[static_cast<std::size_t>(m)].name;
+    if (std::find(record.series.begin(), record.series.end(), name) != record.series.end()) {
+      wanted.push_back(static_cast<Metric>(m));
+    }
+  }
+  return wanted;
+}
+
+void prepare_log(PreparedScenario& prepared, LogCache& logs) {
+  const Scenario& scenario = prepared.scenario;
+  const LogSpec& spec = *scenario.world.log;
+  prepared.log = logs.get(spec.directory, static_cast<int>(prepared.specs.size()),
+                          Duration::seconds(spec.truth_gap_max_s));
+  for (const mrclam::Landmark& landmark : prepared.log->landmarks) {
+    prepared.subjects.push_back(
+        {"landmark" + std::to_string(landmark.subject), {landmark.x_m, landmark.y_m}});
+  }
+  for (std::size_t i = 0; i < prepared.specs.size(); ++i) {
+    for (const mrclam::Sighting& sighting : prepared.log->robots[i].sightings) {
+      prepared.observations[i].push_back(
+          {.time = sighting.time,
+           .subject = sighting.landmark,
+           .information = information_of(sighting, prepared.specs[i]->sensor)});
+    }
+  }
+}
+
+void require_subjects(const PreparedScenario& prepared) {
+  for (std::size_t i = 0; i < prepared.specs.size(); ++i) {
+    if (prepared.specs[i]->kind != "estimator" || !prepared.subjects.empty()) continue;
+    throw InputError(prepared.scenario.file, 0,
+                     "agent '" + prepared.names[i] +
+                         "' estimates, but there is nothing to estimate: give [world] targets or "
+                         "[world.log]");
+  }
+}
+
+RadioOptions radio_options(const RadioSpec& spec) {
+  return {.rate_bps = spec.rate_bps,
+          .header_bytes = static_cast<std::uint32_t>(spec.header_bytes),
+          .queue_packets_max = static_cast<std::uint32_t>(spec.queue_packets_max),
+          .latency = Duration::seconds(spec.latency_s),
+          .loss_probability = spec.loss.model == "bernoulli" ? spec.loss.probability : 0.0};
+}
+
+TalkPhase talk_phase_of(const std::string& name) {
+  if (name == "staggered") return TalkPhase::staggered;
+  return name == "together" ? TalkPhase::together : TalkPhase::random;
+}
+
+}  // namespace
+
+KnownNames known_names(const Catalog& catalog) {
+  KnownNames names;
+  for (const auto& [name, kind] : catalog.agents()) names.agent_kinds.push_back(name);
+  for (const MetricInfo& metric : metrics()) names.metrics.emplace_back(metric.name);
+  for (const Catalog::OwnMetric& metric : catalog.metrics()) names.metrics.push_back(metric.name);
+  return names;
+}
+
+std::shared_ptr<const mrclam::Dataset> LogCache::get(const std::string& directory, int robots,
+                                                     Duration truth_gap_max) {
+  const std::scoped_lock lock(mutex_);
+  const std::string key =
+      directory + "|" + std::to_string(robots) + "|" + std::to_string(truth_gap_max.nanoseconds());
+  std::shared_ptr<const mrclam::Dataset>& dataset = datasets_[key];
+  if (!dataset) {
+    dataset =
+        std::make_shared<const mrclam::Dataset>(mrclam::load(directory, robots, truth_gap_max));
+  }
+  return dataset;
+}
+
+std::shared_ptr<const PreparedScenario> prepare(Scenario scenario, const Catalog&, LogCache& logs) {
+  auto prepared = std::make_shared<PreparedScenario>();
+  prepared->scenario = std::move(scenario);
+  const Scenario& s = prepared->scenario;
+  prepared->names = agent_names(s);
+  const auto places = agent_positions(s);
+  for (const AgentSpec& spec : s.agents) {
+    for (int i = 0; i < spec.count; ++i) prepared->specs.push_back(&spec);
+  }
+  prepared->topology = topology_of(s, places);
+  prepared->series = metrics_of(s.record);
+  prepared->observations.resize(prepared->specs.size());
+  for (const TargetSpec& target : s.world.targets) {
+    prepared->subjects.push_back({target.name, target.position_m});
+  }
+  for (std::size_t i = 0; i < prepared->specs.size(); ++i) {
+    prepared->sensors.push_back(position_sensors(*prepared->specs[i], s.world, places[i]));
+  }
+  if (s.world.log) prepare_log(*prepared, logs);
+  require_subjects(*prepared);
+  prepared->end = Time::at(s.duration_s ? Duration::seconds(*s.duration_s) : prepared->log->span);
+  return prepared;
+}
+
+Run::Run(std::shared_ptr<const PreparedScenario> prepared, const Catalog& catalog,
+         const Options& options)
+    : prepared_(std::move(prepared)),
+      simulation_({.seed = options.seed,
+                   .end = prepared_->end,
+                   .events_max = prepared_->scenario.events_max,
+                   .record = {.keep_messages = prepared_->scenario.record.messages == "all",
+                              .digest = options.digest,
+                              .ledger_digest = options.ledger_digest}}),
+      radio_(simulation_, prepared_->topology, radio_options(prepared_->scenario.radio)) {
+  simulation_.name_of_agent = [this](AgentId id) {
+    return id >= 0 ? prepared_->names[static_cast<std::size_t>(id)] : std::string("central");
+  };
+  build_agents(catalog);
+}
+
+Run::~Run() = default;
+
+void Run::build_agents(const Catalog& catalog) {
+  const Scenario& scenario = prepared_->scenario;
+  Record& record = simulation_.record();
+  const bool watched = !prepared_->subjects.empty() &&
+                       std::any_of(prepared_->specs.begin(), prepared_->specs.end(),
+                                   [](const AgentSpec* spec) { return spec->kind == "estimator"; });
+  if (watched) {
+    record.agent(central_agent, "central", "central");
+    witness_ = std::make_unique<Witness>(
+        simulation_,
+        Witness::Options{.subjects = prepared_->subjects,
+                         .series = prepared_->series,
+                         .series_period = Duration::seconds(scenario.record.series_period_s),
+                         .ledger = scenario.record.ledger == "on"});
+  }
+  for (std::size_t i = 0; i < prepared_->specs.size(); ++i) {
+    const AgentSpec& spec = *prepared_->specs[i];
+    const auto id = static_cast<AgentId>(i);
+    record.agent(id, prepared_->names[i], spec.kind);
+    contexts_.push_back(
+        std::make_unique<Context>(simulation_, radio_,
+                                  Context::Identity{.id = id,
+                                                    .name = prepared_->names[i],
+                                                    .kind = spec.kind,
+                                                    .parameters = spec.parameters}));
+    const auto own = catalog.agents().find(spec.kind);
+    agents_.push_back(own == catalog.agents().end() ? make_estimator(id)
+                                                    : own->second.make(*contexts_.back()));
+    radio_.attach(id, *agents_.back());
+  }
+}
+
+std::unique_ptr<Agent> Run::make_estimator(AgentId id) {
+  const auto i = static_cast<std::size_t>(id);
+  const AgentSpec& spec = *prepared_->specs[i];
+  EstimatorAgent::Options options;
+  options.rule = gaussian::rule_by_name(spec.estimator.fusion).value();
+  options.subjects = static_cast<int>(prepared_->subjects.size());
+  options.dimension = static_cast<int>(prepared_->subjects.front().truth.size());
+  options.sensors = prepared_->sensors[i];
+  options.sensor_period = Duration::seconds(spec.sensor.period_s);
+  options.sensor_start = Time::at(Duration::seconds(spec.sensor.start_s));
+  if (spec.sensor.end_s) options.sensor_end = Time::at(Duration::seconds(*spec.sensor.end_s));
+  options.observations = prepared_->observations[i];
+  if (spec.talk.policy == "periodic") {
+    const Duration period = Duration::seconds(spec.talk.period_s);
+    const Duration phase =
+        spec.talk.phase_s
+            ? Duration::seconds(*spec.talk.phase_s)
+            : talk_phase(talk_phase_of(spec.talk.phase), period, id,
+                         static_cast<int>(prepared_->specs.size()), simulation_.seed());
+    options.talk = PeriodicTalk{.period = period, .phase = phase};
+  }
+  return std::make_unique<EstimatorAgent>(*contexts_[i], *witness_, std::move(options));
+}
+
+RunEnd Run::run() {
+  try {
+    if (witness_) witness_->start();
+    for (std::size_t i = 0; i < agents_.size(); ++i) {
+      simulation_.acting_for(static_cast<AgentId>(i));
+      agents_[i]->start();
+    }
+  } catch (...) {
+    simulation_.fail(no_agent, std::current_exception());
+  }
+  RunEnd end = simulation_.run();
+  if (end.ok()) {
+    try {
+      leave_final_values();
+    } catch (const std::exception& error) {
+      end.reason = EndReason::agent_failed;
+      end.message = std::string("the run failed at its end: ") + error.what();
+    }
+  }
+  simulation_.record().finish();
+  return end;
+}
+
+void Run::leave_final_values() {
+  for (const auto& agent : agents_) agent->finish();
+  if (witness_) witness_->finish();
+  radio_.finish();
+  record_radio();
+  record_log();
+}
+
+void Run::record_radio() {
+  Record& record = simulation_.record();
+  for (AgentId id = 0; id < static_cast<AgentId>(agents_.size()); ++id) {
+    const SenderCounts& counts = radio_.counts(id);
+    const auto scalar = [&](const std::string& name, double value) {
+      record.scalar(id, record.name(name), value);
+    };
+    scalar("packets", static_cast<double>(counts.packets));
+    scalar("bytes_sent", static_cast<double>(counts.bytes_sent));
+    scalar("air_time_s", counts.air_time.seconds());
+    for (int f = 0; f < fate_count; ++f) {
+      scalar(std::string("packets_") + to_string(static_cast<Fate>(f)),
+             static_cast<double>(counts.fates[static_cast<std::size_t>(f)]));
+    }
+  }
+}
+
+void Run::record_log() {
+  if (!prepared_->log) return;
+  Record& record = simulation_.record();
+  for (std::size_t i = 0; i < prepared_->specs.size(); ++i) {
+    const mrclam::Robot& robot = prepared_->log->robots[i];
+    const auto id = static_cast<AgentId>(i);
+    record.scalar(id, record.name("log_skipped_truth_gap"),
+                  static_cast<double>(robot.skips.truth_gap));
+    record.scalar(id, record.name("log_skipped_unknown_barcode"),
+                  static_cast<double>(robot.skips.unknown_barcode));
+    record.scalar(id, record.name("log_skipped_robot_sighting"),
+                  static_cast<double>(robot.skips.robot_sighting));
+    record.scalar(id, record.name("log_skipped_bad_range"),
+                  static_cast<double>(robot.skips.bad_range));
+  }
+}
+
+}  // namespace hearsay

@@ -1,0 +1,90 @@
+// From a scenario to a run: builds world, radio, agents and witness, and lets them go.
+//
+//   const auto prepared = prepare(load_scenario(file, {}, known_names(catalog)), catalog, logs);
+//   Run run(prepared, catalog, {.seed = 7});
+//   const RunEnd end = run.run();
+//   ... run.record() ...
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "agents/catalog.hpp"
+#include "agents/estimator_agent.hpp"
+#include "agents/witness.hpp"
+#include "scenarios/loader.hpp"
+#include "scenarios/scenario.hpp"
+#include "sim/world/mrclam.hpp"
+
+namespace hearsay {
+
+/// What scenario and study files may name, given the agents of `catalog`.
+KnownNames known_names(const Catalog& catalog);
+
+/// Data sets read once and shared by all runs that use them. Safe to use from several threads.
+class LogCache {
+ public:
+  std::shared_ptr<const mrclam::Dataset> get(const std::string& directory, int robots,
+                                             Duration truth_gap_max);
+
+ private:
+  std::mutex mutex_;
+  std::map<std::string, std::shared_ptr<const mrclam::Dataset>> datasets_;
+};
+
+/// A scenario with everything worked out that is the same in each of its runs. Never changes; any
+/// number of runs and threads share one.
+struct PreparedScenario {
+  Scenario scenario;
+  Time end;
+  std::vector<std::string> names;       ///< of agents
+  std::vector<const AgentSpec*> specs;  ///< of each agent, into `scenario`
+  Topology topology = Topology::full(1);
+  std::vector<Subject> subjects;                       ///< empty: nothing for the witness to watch
+  std::vector<std::vector<PositionSensor>> sensors;    ///< of each agent
+  std::vector<std::vector<Observation>> observations;  ///< of each agent, from a log
+  std::shared_ptr<const mrclam::Dataset> log;
+  std::vector<Metric> series;
+};
+
+/// @throws InputError for what only shows when the pieces meet: a log that cannot be read, a log
+/// sensor without a robot in the log.
+std::shared_ptr<const PreparedScenario> prepare(Scenario scenario, const Catalog& catalog,
+                                                LogCache& logs);
+
+class Run {
+ public:
+  struct Options {
+    std::uint64_t seed = 1;
+    DigestSink* digest = nullptr;         ///< not owned
+    DigestSink* ledger_digest = nullptr;  ///< not owned
+  };
+  /// `catalog` must outlive the run.
+  Run(std::shared_ptr<const PreparedScenario> prepared, const Catalog& catalog,
+      const Options& options);
+  ~Run();
+
+  /// Once. A run that failed has a record, too: up to the failure.
+  RunEnd run();
+  const Record& record() const { return simulation_.record(); }
+
+ private:
+  void build_agents(const Catalog& catalog);
+  std::unique_ptr<Agent> make_estimator(AgentId id);
+  void leave_final_values();
+  void record_radio();
+  void record_log();
+
+  // The order matters: what is below is destroyed first and may use what is above.
+  std::shared_ptr<const PreparedScenario> prepared_;
+  Simulation simulation_;
+  std::unique_ptr<Witness> witness_;  // owns the riders of packets in flight
+  Radio radio_;
+  std::vector<std::unique_ptr<Context>> contexts_;
+  std::vector<std::unique_ptr<Agent>> agents_;
+};
+
+}  // namespace hearsay

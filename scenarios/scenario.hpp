@@ -1,0 +1,118 @@
+// A scenario as typed data: one run's world, radio, agents and record. Units stand in the names.
+// scenarios/schema.hpp says how each field is called in TOML and which values are allowed.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hearsay {
+
+struct TargetSpec {
+  std::string name;                ///< default "target<i>"
+  std::vector<double> position_m;  ///< 2 coordinates
+};
+
+/// A recorded data set that takes the place of synthetic sensors.
+struct LogSpec {
+  std::string kind = "mrclam";   ///< UTIAS multi-robot data sets
+  std::string directory;         ///< relative to the scenario file, or absolute
+  double truth_gap_max_s = 0.5;  ///< measurements in wider gaps of the truth are skipped, > 0
+};
+
+struct WorldSpec {
+  std::vector<TargetSpec> targets;  ///< empty with a log: its landmarks
+  std::optional<LogSpec> log;
+};
+
+struct LossSpec {
+  std::string model = "none";  ///< "none" | "bernoulli"
+  double probability = 0.0;    ///< [0, 1]
+};
+
+struct RadioSpec {
+  std::string topology = "full";          ///< "line" | "ring" | "star" | "full" | "edges" | "disk"
+  std::vector<std::array<int, 2>> edges;  ///< for "edges"; agents by number
+  double range_m = 0.0;                   ///< for "disk", > 0
+  double rate_bps = 1e6;                  ///< > 0
+  int header_bytes = 0;                   ///< 0 … 65535
+  int queue_packets_max = 64;             ///< 1 … 1e6
+  double latency_s = 0.0;                 ///< ≥ 0
+  LossSpec loss;
+};
+
+struct CircleSpec {
+  std::vector<double> center_m = {0.0, 0.0};
+  double radius_m = 1.0;  ///< > 0; agent k of n stands at angle 2πk/n
+};
+
+struct SensorSpec {
+  std::string kind = "none";             ///< "none" | "position" | "log"
+  double period_s = 1.0;                 ///< > 0
+  double start_s = 0.0;                  ///< first look, ≥ 0
+  std::optional<double> end_s;           ///< no look after; default: the end of the run
+  std::optional<double> sigma_m;         ///< position: same in every direction, > 0
+  std::optional<double> sigma_along_m;   ///< position: along the line of sight, with …
+  std::optional<double> sigma_across_m;  ///< … across it; both instead of sigma_m
+  double sigma_range_m = 0.15;           ///< log, > 0
+  double sigma_bearing_rad = 0.08;       ///< log, > 0
+  double sigma_heading_rad = 0.03;       ///< log: pose, ≥ 0
+  double sigma_position_m = 0.05;        ///< log: pose, per axis, ≥ 0
+};
+
+struct EstimatorSpec {
+  std::string kind = "static-gaussian";
+  std::string fusion = "none";  ///< a name of gaussian::rules()
+};
+
+struct TalkSpec {
+  std::string policy = "periodic";  ///< "periodic" | "never"
+  double period_s = 5.0;            ///< > 0
+  std::string phase = "random";     ///< "random" | "staggered" | "together"
+  std::optional<double> phase_s;    ///< this agent's own phase instead, in [0, period)
+};
+
+struct AgentSpec {
+  std::string name;                ///< default "<kind><i>"; with count > 1 a number is appended
+  std::string kind = "estimator";  ///< or one that a user's program adds
+  int count = 1;                   ///< 1 … 1e6
+  std::optional<std::vector<double>> position_m;  ///< 2 coordinates
+  std::optional<CircleSpec> circle;               ///< instead of position_m
+  SensorSpec sensor;
+  EstimatorSpec estimator;
+  TalkSpec talk;
+  std::map<std::string, double> parameters;  ///< free, for agents of a user's program
+};
+
+struct RecordSpec {
+  std::vector<std::string> series;  ///< names of metrics kept over time; empty: none
+  double series_period_s = 1.0;     ///< > 0; samples at 0, period, 2·period, … and at the end
+  std::string messages = "counts";  ///< "all" | "counts"
+  std::string ledger = "on";        ///< "on" | "off"
+};
+
+struct Scenario {
+  std::string file;                  ///< where it came from; not part of the scenario's content
+  std::optional<double> duration_s;  ///< > 0; with a log the default is the log's span
+  std::uint64_t seed = 1;
+  std::uint64_t events_max = 1'000'000'000'000;
+  WorldSpec world;
+  RadioSpec radio;
+  std::vector<AgentSpec> agents;  ///< at least one
+  RecordSpec record;
+
+  /// Number of agents: the sum of counts.
+  int agent_count() const;
+};
+
+/// The name of every agent, by number: as given (with count > 1 and 0, 1, … behind it), else its
+/// kind and number.
+std::vector<std::string> agent_names(const Scenario& scenario);
+
+/// Where every agent stands, by number, if the file says so.
+std::vector<std::optional<std::array<double, 2>>> agent_positions(const Scenario& scenario);
+
+}  // namespace hearsay

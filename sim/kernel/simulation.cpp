@@ -1,0 +1,110 @@
+#include "sim/kernel/simulation.hpp"
+
+#include <utility>
+
+#include "sim/kernel/error.hpp"
+
+namespace hearsay {
+
+namespace {
+
+// "12.500000000": every nanosecond, without a detour through floating point.
+std::string to_seconds(Time time) {
+  constexpr std::int64_t ns_per_s = 1'000'000'000;
+  const std::string fraction = std::to_string(time.nanoseconds() % ns_per_s);
+  return std::to_string(time.nanoseconds() / ns_per_s) + "." +
+         std::string(9 - fraction.size(), '0') + fraction;
+}
+
+std::string what_of(const std::exception_ptr& error) {
+  try {
+    std::rethrow_exception(error);
+  } catch (const std::exception& known) {
+    return known.what();
+  } catch (...) {
+    return "an exception that is not a std::exception";
+  }
+}
+
+}  // namespace
+
+const char* to_string(EndReason reason) {
+  switch (reason) {
+    case EndReason::time_reached:
+      return "time reached";
+    case EndReason::nothing_left:
+      return "nothing left";
+    case EndReason::agent_failed:
+      return "agent failed";
+    case EndReason::event_budget:
+      return "event budget";
+  }
+  throw BrokenInvariant("an end reason without a name");
+}
+
+Simulation::Simulation(const Options& options) : options_(options), record_(options.record) {
+  require(options.end >= Time(), "a run ends before it starts");
+}
+
+Time Simulation::after(Duration span) const {
+  if (span <= Duration()) return now_;
+  return span >= Time::never() - now_ ? Time::never() : now_ + span;
+}
+
+EventId Simulation::schedule(Time time, Phase phase, Callback callback) {
+  require(time >= now_, "an event was scheduled in the past");
+  require(!observing_ || time > now_, "a callback that takes samples scheduled an event at once");
+  return queue_.push(time, phase, std::move(callback));
+}
+
+std::string Simulation::who(AgentId agent) const {
+  if (agent == no_agent) return "the run";
+  const std::string name = name_of_agent ? name_of_agent(agent) : std::string();
+  if (!name.empty()) return "agent '" + name + "'";
+  return agent == central_agent ? "the central estimator" : "agent " + std::to_string(agent);
+}
+
+void Simulation::fail(AgentId agent, std::exception_ptr error) {
+  if (failed_) return;
+  failed_ = true;
+  end_.reason = EndReason::agent_failed;
+  end_.agent = agent;
+  end_.message = who(agent) + " failed at " + to_seconds(now_) + " s: " + what_of(error);
+}
+
+RunEnd Simulation::run() {
+  require(!started_, "a simulation was run twice");
+  started_ = true;
+  while (!failed_) {
+    const Time next = queue_.empty() ? Time::never() : queue_.next_time();
+    if (next == Time::never() && (queue_.empty() || options_.end == Time::never())) {
+      end_.reason = EndReason::nothing_left;
+      break;
+    }
+    if (next > options_.end) {
+      end_.reason = EndReason::time_reached;
+      now_ = options_.end;
+      break;
+    }
+    if (end_.events == options_.events_max) {
+      end_.reason = EndReason::event_budget;
+      break;
+    }
+    EventQueue::Event event = queue_.pop();
+    now_ = event.time;
+    observing_ = event.phase == Phase::observe;
+    acting_ = no_agent;
+    ++end_.events;
+    try {
+      event.callback();
+    } catch (...) {
+      fail(acting_, std::current_exception());
+    }
+  }
+  observing_ = false;
+  acting_ = no_agent;
+  end_.at = now_;
+  return end_;
+}
+
+}  // namespace hearsay

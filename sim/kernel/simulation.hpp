@@ -1,0 +1,111 @@
+// One run: the clock, the pending events, the named random streams and the record.
+//
+// No globals: any number of simulations live in one process, each used by one thread at a time.
+//
+//   Simulation simulation({.seed = 1, .end = Time::at(60_s)});
+//   simulation.schedule(Time::at(1_s), Phase::act, [&] { ... });
+//   const RunEnd end = simulation.run();
+//
+// Who owns processes or awaits something destroys it before the simulation; only what is done may
+// outlive it.
+#pragma once
+
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <string>
+
+#include "sim/kernel/event_queue.hpp"
+#include "sim/kernel/ids.hpp"
+#include "sim/kernel/random.hpp"
+#include "sim/kernel/record.hpp"
+#include "sim/kernel/time.hpp"
+
+namespace hearsay {
+
+enum class EndReason : std::uint8_t {
+  time_reached,  ///< all events up to and including the end time have happened
+  nothing_left,  ///< the queue ran empty before
+  agent_failed,  ///< an exception left an agent's code, or an invariant broke
+  event_budget,  ///< more events than allowed
+};
+/// "time reached", "nothing left", "agent failed", "event budget".
+const char* to_string(EndReason reason);
+
+/// Why and when a run ended.
+struct RunEnd {
+  EndReason reason = EndReason::nothing_left;
+  Time at;                   ///< clock at the end
+  std::uint64_t events = 0;  ///< events that happened
+  AgentId agent = no_agent;  ///< who failed
+  /// Of a failure: "agent 'uav2' failed at 12.500000000 s: <what>". An agent without a name is
+  /// "agent 3" or "the central estimator", nobody "the run".
+  std::string message;
+  bool ok() const { return reason == EndReason::time_reached || reason == EndReason::nothing_left; }
+};
+
+class Simulation {
+ public:
+  struct Options {
+    std::uint64_t seed = 1;
+    Time end = Time::never();                      ///< events at this instant still happen
+    std::uint64_t events_max = 1'000'000'000'000;  ///< budget; the run ends when it is spent
+    Record::Options record;
+  };
+  explicit Simulation(const Options& options);
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
+
+  Time now() const { return now_; }
+  /// The instant `span` from now: now() for a negative span, Time::never() beyond the last instant.
+  Time after(Duration span) const;
+  Time end() const { return options_.end; }
+  std::uint64_t seed() const { return options_.seed; }
+
+  /// Schedules `callback` at `time`. An exception that leaves it ends the run in the name of the
+  /// agent it acts for. At Time::never() it stays pending and does not happen.
+  /// @throws BrokenInvariant if `time` is before now(), or is now() while samples are taken
+  /// (Phase::observe), which must be the last thing of an instant.
+  EventId schedule(Time time, Phase phase, Callback callback);
+  bool cancel(EventId id) { return queue_.cancel(id); }
+
+  /// From now on failures are charged to `agent`. Callbacks that act for an agent set it first;
+  /// it is reset to no_agent before each event.
+  void acting_for(AgentId agent) { acting_ = agent; }
+
+  Stream stream(Purpose purpose, Entity entity) const {
+    return Stream(options_.seed, purpose, entity);
+  }
+  Stream stream_at(Purpose purpose, Entity entity, std::uint64_t count) const {
+    return Stream::at(options_.seed, purpose, entity, count);
+  }
+
+  Record& record() { return record_; }
+  const Record& record() const { return record_; }
+
+  /// Name of an agent for failure messages; set by whoever builds the run.
+  std::function<std::string(AgentId)> name_of_agent;
+
+  /// Ends the run after the current event with this failure (the first one counts). `error` is not
+  /// null.
+  void fail(AgentId agent, std::exception_ptr error);
+
+  /// Lets everything happen up to the end. Callable once (else BrokenInvariant). On time_reached
+  /// the clock stands at end(), otherwise at the last event.
+  RunEnd run();
+
+ private:
+  std::string who(AgentId agent) const;
+
+  Options options_;
+  Time now_;
+  EventQueue queue_;
+  Record record_;
+  AgentId acting_ = no_agent;
+  bool started_ = false;
+  bool observing_ = false;
+  bool failed_ = false;
+  RunEnd end_;
+};
+
+}  // namespace hearsay

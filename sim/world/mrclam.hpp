@@ -1,0 +1,71 @@
+// UTIAS multi-robot cooperative localization and mapping data sets (Leung et al., IJRR 30(8),
+// 2011).
+//
+// A directory with Barcodes.dat (subject barcode), Landmark_Groundtruth.dat (subject x y σx σy) and
+// for each robot Robot<i>_Groundtruth.dat (t x y heading) and Robot<i>_Measurement.dat (t barcode
+// range bearing). Robots are subjects 1 … 5, landmarks 6 and up. Lines that start with # are
+// comments; the last line, too, ends with a line end, or the file counts as cut off.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sim/kernel/time.hpp"
+
+namespace hearsay::mrclam {
+
+/// Every data set has this many robots: subjects 1 … 5.
+inline constexpr int robots_max = 5;
+
+struct Landmark {
+  int subject;
+  double x_m, y_m;  ///< surveyed position
+};
+/// A pose at an instant; headings unwrapped (no jumps of 2π), counterclockwise from the x axis.
+struct PoseSample {
+  Time time;
+  double x_m, y_m, heading_rad;
+};
+struct Sighting {
+  Time time;
+  int landmark;    ///< index into landmarks
+  double range_m;  ///< > 0
+  double bearing_rad;
+  PoseSample pose;  ///< of the robot, interpolated linearly from the truth
+};
+/// What was left out and why, each line under the first reason that holds, in this order:
+/// unknown_barcode, robot_sighting, bad_range, truth_gap. Sum of the four + sightings = lines.
+struct Skips {
+  std::uint64_t truth_gap = 0;        ///< no truth within the permitted gap
+  std::uint64_t unknown_barcode = 0;  ///< in no line of Barcodes.dat
+  std::uint64_t robot_sighting = 0;   ///< another robot; not used here
+  std::uint64_t bad_range = 0;        ///< range not positive
+  std::uint64_t lines = 0;            ///< measurement lines read
+};
+struct Robot {
+  int subject;
+  std::vector<Sighting> sightings;  ///< by time; equal times in file order
+  Skips skips;
+  std::vector<int> unknown_barcodes;  ///< distinct, ascending
+};
+struct Dataset {
+  std::vector<Landmark> landmarks;  ///< by subject, ascending
+  std::vector<Robot> robots;        ///< subjects 1 … `robots`
+  Duration span;                    ///< first to last measurement line of any of these robots,
+                                    ///< skipped or not; times count from the first
+};
+
+/// Loads the robots 1 … `robots` of the data set in `directory`.
+///
+/// A measurement is used if the truth has a sample at its very time, or one before and one after it
+/// at most `truth_gap_max` (> 0) apart; the pose is interpolated between these. Of truth samples at
+/// one time the last one holds. Times are exact to the nanosecond.
+/// @throws InputError with file and line: directory or file missing, `robots` outside 1 … 5, a line
+/// with too few or too many fields or text that is no number, a number that is not finite or beyond
+/// ±1e6 (times: beyond 0 … 9e9 s), time going backwards, a barcode or subject listed twice, a
+/// subject without landmark position, a landmark without barcode, a truth file without poses, no
+/// measurement at all, a last line that is cut off.
+Dataset load(const std::string& directory, int robots, Duration truth_gap_max);
+
+}  // namespace hearsay::mrclam

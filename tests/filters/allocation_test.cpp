@@ -1,0 +1,144 @@
+// Nothing that happens for a packet or a sample may allocate. Counted at malloc, which operator new
+// and Eigen both end in.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include "filters/gaussian/codec.hpp"
+#include "filters/gaussian/fusion.hpp"
+#include "filters/ledger/ledger.hpp"
+#include "tests/filters/gaussian/samples.hpp"
+
+#if defined(__SANITIZE_ADDRESS__)
+#define HEARSAY_COUNTS_MALLOC 0  // the sanitizer has a malloc of its own
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define HEARSAY_COUNTS_MALLOC 0
+#endif
+#endif
+#if !defined(HEARSAY_COUNTS_MALLOC) && defined(__GLIBC__)
+#define HEARSAY_COUNTS_MALLOC 1
+#endif
+
+#if HEARSAY_COUNTS_MALLOC
+
+namespace {
+std::atomic<std::size_t> allocations{0};
+}
+
+extern "C" {
+void* __libc_malloc(std::size_t size);
+void* malloc(std::size_t size) {
+  allocations.fetch_add(1, std::memory_order_relaxed);
+  return __libc_malloc(size);
+}
+}
+
+namespace hearsay::gaussian {
+namespace {
+
+template <typename Work>
+std::size_t allocations_of(const Work& work) {
+  const std::size_t before = allocations.load();
+  work();
+  return allocations.load() - before;
+}
+
+TEST(Allocation, IsCounted) {
+  EXPECT_EQ(allocations_of([] { ::operator delete(::operator new(8)); }), 1u);
+  EXPECT_GE(allocations_of([] { const Eigen::MatrixXd m = Eigen::MatrixXd::Zero(3, 3); }), 1u);
+}
+
+TEST(Allocation, DoesNotHappenInFusionRules) {
+  Stream random = stream("allocation");
+  for (int n = 1; n <= dimension_max; ++n) {
+    const Belief a = random_belief(random, n);
+    const Belief b = random_belief(random, n);
+    Belief singular = a;
+    singular.omega.row(0).setZero();
+    singular.omega.col(0).setZero();
+    for (const RuleInfo& row : rules()) {
+      EXPECT_EQ(allocations_of([&] { coefficients(row.rule, a, b); }), 0u) << row.name << n;
+      EXPECT_EQ(allocations_of([&] { coefficients(row.rule, a, singular); }), 0u) << row.name << n;
+      EXPECT_EQ(allocations_of([&] { coefficients(row.rule, singular, singular); }), 0u)
+          << row.name << n;
+    }
+    EXPECT_EQ(allocations_of([&] { intersect_det(a.omega, b.omega); }), 0u) << n;
+    EXPECT_EQ(allocations_of([&] { intersect_trace(a.omega, b.omega); }), 0u) << n;
+  }
+}
+
+TEST(Allocation, DoesNotHappenInMetricsOfABelief) {
+  Stream random = stream("allocation");
+  for (int n = 1; n <= dimension_max; ++n) {
+    const Belief a = random_belief(random, n);
+    const Belief b = random_belief(random, n);
+    Belief indefinite = a;
+    indefinite.omega(0, 0) -= 2 * indefinite.omega.trace();
+    const Vector truth = Vector::Zero(n);
+    EXPECT_EQ(allocations_of([&] {
+                Belief sum = a;
+                sum += measurement_information(Matrix::Identity(n, n), b.omega, truth);
+                sum -= b;
+                definiteness(sum);
+                state(indefinite);
+                covariance(a);
+                entropy_nats(a);
+                kl_divergence_nats(a, b);
+                nees(a, truth);
+                claimed_sigma(a);
+              }),
+              0u)
+        << n;
+  }
+}
+
+TEST(Allocation, DoesNotHappenInAWarmCodec) {
+  Stream random = stream("allocation");
+  Message large{1, 2, {}};
+  for (int i = 0; i < 15; ++i) large.beliefs.push_back({0, random_belief(random, 2)});
+  Message small = large;
+  small.beliefs.resize(3);
+  Message back;
+  std::vector<std::byte> bytes;
+  EXPECT_GT(allocations_of([&] { encode(large, bytes); }), 0u);
+  EXPECT_GT(allocations_of([&] { decode(bytes, back); }), 0u);
+  for (const Message* message : {&small, &large}) {
+    EXPECT_EQ(allocations_of([&] { encode(*message, bytes); }), 0u);
+    EXPECT_EQ(allocations_of([&] { decode(bytes, back); }), 0u);
+    EXPECT_EQ(back.beliefs.size(), message->beliefs.size());
+  }
+}
+
+TEST(Allocation, DoesNotHappenInAWarmLedger) {
+  MeasurementBook book(2);
+  Ledger own;
+  Ledger heard;
+  Ledger common;
+  for (int k = 0; k < 600; ++k) {
+    const std::size_t index = book.add({Matrix::Identity(2, 2), Vector::Zero(2)});
+    (k % 2 == 0 ? own : heard).measured(index);
+  }
+  own.combine(1, 1, heard, 0, nullptr);
+  common = heard;
+  Ledger copy = own;
+  const Belief belief = book.weighted_sum(own.weights());
+  EXPECT_EQ(allocations_of([&] {
+              own.combine(0.5, 0.5, heard, 1, &common);
+              common = own;
+              copy = own;
+              copy.clear();
+              copy = own;
+              multiplicity(own);
+              true_covariance(belief.omega, own, book);
+              reach_gap(belief, own, book);
+            }),
+            0u);
+}
+
+}  // namespace
+}  // namespace hearsay::gaussian
+
+#endif

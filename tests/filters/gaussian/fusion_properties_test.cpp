@@ -1,0 +1,195 @@
+// One suite over every fusion rule.
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "filters/gaussian/fusion.hpp"
+#include "filters/ledger/ledger.hpp"
+#include "tests/filters/gaussian/samples.hpp"
+
+namespace hearsay::gaussian {
+namespace {
+
+/// What a rule claims to be. A new rule gets its row here.
+struct Character {
+  Rule rule;
+  bool idempotent;    ///< fusing a belief with itself changes nothing
+  bool commutative;   ///< sender and receiver end with the same belief
+  bool conservative;  ///< under any correlation, if both beliefs are
+};
+constexpr Character characters[] = {
+    {Rule::none, true, false, true},     {Rule::naive, false, true, false},
+    {Rule::channel, false, true, false}, {Rule::channel_robust, false, true, false},
+    {Rule::ci_det, true, true, true},    {Rule::ci_trace, true, true, true},
+};
+
+class EveryRule : public testing::TestWithParam<RuleInfo> {
+ protected:
+  Rule rule() const { return GetParam().rule; }
+  const Character& character() const {
+    for (const Character& c : characters) {
+      if (c.rule == rule()) return c;
+    }
+    throw std::logic_error("a rule without a row in this test");
+  }
+};
+
+std::string test_name(const testing::TestParamInfo<RuleInfo>& parameter) {
+  std::string name(parameter.param.name);
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+}
+
+TEST_P(EveryRule, LeavesASymmetricMatrix) {
+  Stream random = stream("symmetry");
+  for (int trial = 0; trial < 300; ++trial) {
+    const int n = 1 + trial % dimension_max;
+    const Belief a = random_belief(random, n);
+    const Belief b = random_belief(random, n);
+    const Belief common = random_belief(random, n);
+    const Belief sum = fused(coefficients(rule(), a, b), a, b, common);
+    EXPECT_EQ(sum.omega, Matrix(sum.omega.transpose()));
+    EXPECT_TRUE(sum.omega.allFinite());
+  }
+}
+
+TEST_P(EveryRule, FusingABeliefWithItself) {
+  Stream random = stream("idempotence");
+  for (int trial = 0; trial < 100; ++trial) {
+    const int n = 1 + trial % dimension_max;
+    const Belief a = random_belief(random, n);
+    const Belief sum = fused(coefficients(rule(), a, a), a, a, Belief::unknown(n));
+    EXPECT_EQ(relative(sum.omega, a.omega) < 1e-14, character().idempotent);
+    EXPECT_EQ(relative(sum.xi, a.xi) < 1e-14, character().idempotent);
+  }
+}
+
+TEST_P(EveryRule, WhoeverReceives) {
+  Stream random = stream("commutativity");
+  for (int trial = 0; trial < 400; ++trial) {
+    const int n = 1 + trial % dimension_max;
+    const Belief a = random_belief(random, n);
+    const Belief b = random_belief(random, n);
+    const Belief common = random_belief(random, n);
+    const Coefficients there = coefficients(rule(), a, b);
+    const Coefficients back = coefficients(rule(), b, a);
+    const Belief one = fused(there, a, b, common);
+    const Belief other = fused(back, b, a, common);
+    EXPECT_EQ(relative(one.omega, other.omega) < 1e-10, character().commutative);
+    if (character().commutative) {
+      EXPECT_NEAR(there.own, back.received, 1e-11);
+    }
+  }
+}
+
+/// P − P_true of `fused = a·own + b·received` where the joint errors of both have covariance
+/// [P_a X; Xᵀ P_b]; the least eigenvalue, relative to P.
+double margin(const Coefficients& c, const Eigen::MatrixXd& A, const Eigen::MatrixXd& B,
+              const Eigen::MatrixXd& X) {
+  const Eigen::MatrixXd P = (c.own * A + c.received * B).inverse();
+  const Eigen::MatrixXd cross = A * X * B;
+  const Eigen::MatrixXd truth = P *
+                                (c.own * c.own * A + c.received * c.received * B +
+                                 c.own * c.received * (cross + cross.transpose())) *
+                                P;
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(P - truth).eigenvalues()(0) / P.norm();
+}
+
+/// X = L_a C L_bᵀ is admissible for every contraction C; half of them on the boundary.
+Eigen::MatrixXd random_cross_covariance(Stream& random, const Eigen::MatrixXd& A,
+                                        const Eigen::MatrixXd& B) {
+  const auto n = static_cast<int>(A.rows());
+  const Eigen::MatrixXd g = random_matrix(random, n, n);
+  Eigen::MatrixXd contraction;
+  if (random.bernoulli(0.5)) {
+    contraction = Eigen::HouseholderQR<Eigen::MatrixXd>(g).householderQ();
+    for (int i = 0; i < n; ++i) {  // Householder's signs are not random
+      if (random.bernoulli(0.5)) contraction.col(i) *= -1.0;
+    }
+  } else {
+    contraction = g / Eigen::JacobiSVD<Eigen::MatrixXd>(g).singularValues()(0);
+    contraction *= random.uniform();
+  }
+  const Eigen::MatrixXd Pa = A.inverse();
+  const Eigen::MatrixXd Pb = B.inverse();
+  const Eigen::MatrixXd La = Pa.llt().matrixL();
+  const Eigen::MatrixXd Lb = Pb.llt().matrixL();
+  return La * contraction * Lb.transpose();
+}
+
+TEST_P(EveryRule, UnderCorrelationsNobodyKnowsOf) {
+  Stream random = stream("conservativeness");
+  double least = 1.0;
+  for (int pair = 0; pair < 200; ++pair) {
+    const int n = 1 + pair % 4;
+    const Belief a = random_belief(random, n);
+    const Belief b = random_belief(random, n);
+    const Coefficients c = coefficients(rule(), a, b);
+    for (int draw = 0; draw < 30; ++draw) {
+      const Eigen::MatrixXd X = random_cross_covariance(random, a.omega, b.omega);
+      least = std::min(least, margin(c, a.omega, b.omega, X));
+    }
+  }
+  if (character().conservative) {
+    EXPECT_GT(least, -1e-12);
+  } else {
+    EXPECT_LT(least, -0.5);
+  }
+}
+
+TEST_P(EveryRule, TheLedgerSaysWhatTheBeliefSays) {
+  // Three beliefs built from measurements, fused at random; each stays its ledger's weighted sum.
+  Stream random = stream("ledger");
+  MeasurementBook book(2);
+  Belief beliefs[3] = {Belief::unknown(2), Belief::unknown(2), Belief::unknown(2)};
+  Ledger ledgers[3];
+  for (int step = 0; step < 60; ++step) {
+    const auto i = static_cast<std::size_t>(random.below(3));
+    const auto j = (i + 1 + static_cast<std::size_t>(random.below(2))) % 3;
+    const std::size_t k = 3 - i - j;
+    const Belief z = measurement_information(random_matrix(random, 1, 2), matrix({{0.5}}),
+                                             random_vector(random, 1));
+    ledgers[i].measured(book.add(z));
+    beliefs[i] += z;
+    const Coefficients c = coefficients(rule(), beliefs[i], beliefs[j]);
+    beliefs[i] = fused(c, beliefs[i], beliefs[j], beliefs[k]);
+    ledgers[i].combine(c.own, c.received, ledgers[j], c.common, &ledgers[k]);
+
+    const Belief sum = book.weighted_sum(ledgers[i].weights());
+    const double size = 1.0 + beliefs[i].omega.norm() + beliefs[j].omega.norm();
+    EXPECT_LT((sum.omega - beliefs[i].omega).norm(), 1e-9 * size) << step;
+    EXPECT_LT((sum.xi - beliefs[i].xi).norm(), 1e-9 * size) << step;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(FusionRules, EveryRule, testing::ValuesIn(rules().begin(), rules().end()),
+                         test_name);
+
+TEST(FusionProperties, TheLeastMarginsOfThePublishedPair) {
+  const Matrix A = diagonal({1.0 / 3.0, 2.5});
+  const Eigen::MatrixXd Pb = matrix({{2, -0.8}, {-0.8, 1}});
+  const Belief a{A, vector({0, 0})};
+  const Belief b{Matrix(Pb.inverse()), vector({0, 0})};
+  Stream random = stream("published margin");
+  const auto least = [&](Rule rule) {
+    const Coefficients c = coefficients(rule, a, b);
+    const double size = (c.own * a.omega + c.received * b.omega).inverse().norm();
+    double worst = 1.0;
+    for (int draw = 0; draw < 5000; ++draw) {
+      const Eigen::MatrixXd X = random_cross_covariance(random, a.omega, b.omega);
+      worst = std::min(worst, size * margin(c, a.omega, b.omega, X));
+    }
+    return worst;
+  };
+  EXPECT_NEAR(least(Rule::naive), -1.04, 0.005);
+  EXPECT_NEAR(least(Rule::ci_det), 0.0, 1e-6);
+}
+
+}  // namespace
+}  // namespace hearsay::gaussian

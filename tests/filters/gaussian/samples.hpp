@@ -1,0 +1,84 @@
+// Beliefs, matrices and noise for the tests of this family.
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+#include <initializer_list>
+
+#include "filters/gaussian/belief.hpp"
+#include "filters/gaussian/fusion.hpp"
+#include "sim/kernel/random.hpp"
+
+namespace hearsay::gaussian {
+
+inline Matrix matrix(std::initializer_list<std::initializer_list<double>> rows) {
+  Matrix m(rows.size(), rows.begin()->size());
+  Eigen::Index i = 0;
+  for (const auto& row : rows) {
+    Eigen::Index j = 0;
+    for (const double value : row) m(i, j++) = value;
+    ++i;
+  }
+  return m;
+}
+
+inline Vector vector(std::initializer_list<double> values) {
+  Vector v(values.size());
+  Eigen::Index i = 0;
+  for (const double value : values) v(i++) = value;
+  return v;
+}
+
+inline Matrix diagonal(std::initializer_list<double> values) { return vector(values).asDiagonal(); }
+
+inline Stream stream(std::string_view purpose) {
+  return Stream(1, Purpose(purpose), Entity::agent(0));
+}
+
+inline Matrix random_matrix(Stream& random, int rows, int columns) {
+  Matrix m(rows, columns);
+  for (Eigen::Index j = 0; j < columns; ++j) {
+    for (Eigen::Index i = 0; i < rows; ++i) m(i, j) = random.normal();
+  }
+  return m;
+}
+
+inline Vector random_vector(Stream& random, int n) { return random_matrix(random, n, 1); }
+
+/// Symmetric positive definite with eigenvalues spread over about `decades` decades.
+inline Matrix random_information(Stream& random, int n, double decades = 2.0) {
+  const Eigen::MatrixXd g = random_matrix(random, n, n);
+  const Eigen::MatrixXd q = Eigen::HouseholderQR<Eigen::MatrixXd>(g).householderQ();
+  Eigen::VectorXd d(n);
+  for (int i = 0; i < n; ++i) d(i) = std::pow(10.0, random.uniform(-decades / 2, decades / 2));
+  const Eigen::MatrixXd m = q * d.asDiagonal() * q.transpose();
+  return 0.5 * (m + m.transpose());
+}
+
+inline Belief random_belief(Stream& random, int n) {
+  Belief belief{random_information(random, n), Vector(n)};
+  belief.xi = belief.omega * random_vector(random, n);
+  return belief;
+}
+
+/// What an agent makes of a rule's coefficients.
+inline Belief fused(const Coefficients& c, const Belief& own, const Belief& received,
+                    const Belief& common) {
+  Belief sum = own;
+  sum *= c.own;
+  Belief heard = received;
+  heard *= c.received;
+  sum += heard;
+  if (c.common != 0.0) {
+    Belief known = common;
+    known *= c.common;
+    sum -= known;
+  }
+  return sum;
+}
+
+inline double relative(const Eigen::MatrixXd& value, const Eigen::MatrixXd& reference) {
+  return (value - reference).norm() / reference.norm();
+}
+
+}  // namespace hearsay::gaussian

@@ -1,0 +1,146 @@
+// Whatever stands in a file, reading it ends with a scenario or an InputError.
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <string_view>
+
+#include "temp_files.hpp"
+
+namespace hearsay {
+namespace {
+
+// A small generator of its own, so that a failure can be repeated anywhere.
+class Dice {
+ public:
+  std::size_t below(std::size_t n) {
+    state_ = state_ * 6364136223846793005u + 1442695040888963407u;
+    return static_cast<std::size_t>(state_ >> 33) % n;
+  }
+
+ private:
+  std::uint64_t state_ = 2024;
+};
+
+// A few edits: a byte changed, removed or inserted; a piece repeated or cut; a telling token put
+// in.
+std::string mutated(std::string text, Dice& dice) {
+  static constexpr std::string_view tokens[] = {"[",
+                                                "]",
+                                                "{",
+                                                "}",
+                                                "[[",
+                                                "]]",
+                                                "=",
+                                                ".",
+                                                ",",
+                                                "\"",
+                                                "\"\"\"",
+                                                "'",
+                                                "\n",
+                                                "-",
+                                                "1e999",
+                                                "nan",
+                                                "inf",
+                                                "-1",
+                                                "0",
+                                                "99999999999999999999",
+                                                "9223372036854775807",
+                                                "1979-05-27",
+                                                "\\u0000",
+                                                "true",
+                                                "agents",
+                                                "[[agents]]\n",
+                                                "[world.log]\n",
+                                                "edges = [[0, 9]]\n",
+                                                "\xff",
+                                                "\xc3",
+                                                "#"};
+  for (std::size_t edits = 1 + dice.below(2); edits > 0; --edits) {
+    const std::size_t at = dice.below(text.size() + 1);
+    const std::size_t length = dice.below(12);
+    switch (dice.below(5)) {
+      case 0:
+        if (at < text.size()) text[at] = static_cast<char>(dice.below(256));
+        break;
+      case 1:
+        text.erase(at, length);
+        break;
+      case 2:
+        text.insert(at, 1, static_cast<char>(dice.below(128)));
+        break;
+      case 3:
+        text.insert(dice.below(text.size() + 1), text.substr(at, length));
+        break;
+      default:
+        text.insert(at, tokens[dice.below(std::size(tokens))]);
+    }
+  }
+  return text;
+}
+
+class Fuzz : public InTempDirectory {
+ protected:
+  // Counts what came of it; anything else than success or InputError fails the test.
+  template <class Load>
+  void attempt(const std::string& content, Load load) {
+    write("f.toml", content);
+    try {
+      load();
+      ++read;
+    } catch (const InputError& error) {
+      ++refused;
+      EXPECT_NE(std::string(error.what()), "");
+    } catch (const std::exception& error) {
+      ADD_FAILURE() << error.what() << "\nfrom\n" << content;
+    }
+  }
+  int read = 0, refused = 0;
+};
+
+TEST_F(Fuzz, AScenarioIsReadOrRefused) {
+  Dice dice;
+  for (int i = 0; i < 2000; ++i) {
+    attempt(mutated(ring, dice), [] { canonical_text(load_scenario("f.toml", {}, {})); });
+  }
+  EXPECT_GT(read, 20);
+  EXPECT_GT(refused, 500);
+}
+
+TEST_F(Fuzz, AStudyIsReadOrRefused) {
+  write("ring.toml", ring);
+  const std::string study = R"(scenario = "ring.toml"
+repetitions = 3
+[set]
+radio.latency_s = 0.1
+[axes]
+rule = { key = "agents.estimator.fusion", values = ["naive", "ci-det"] }
+place = { points = [{ label = 1, set = { "agents.circle.radius_m" = 2 } }] }
+[[skip]]
+when = { rule = "naive", place = [1] }
+[[claims]]
+text = "t"
+expect = { metric = "anees", where = { rule = "ci-det" }, within = "chi2-band" }
+[[figures]]
+script = "a.py"
+output = "a.png"
+)";
+  Dice dice;
+  for (int i = 0; i < 1000; ++i) {
+    attempt(mutated(study, dice), [] { load_study("f.toml", {}); });
+  }
+  EXPECT_GT(read, 20);
+  EXPECT_GT(refused, 500);
+}
+
+TEST_F(Fuzz, AnOverrideIsTakenOrRefused) {
+  Dice dice;
+  for (int i = 0; i < 2000; ++i) {
+    const std::string text = mutated("agents[0].sensor.period_s=0.5", dice);
+    attempt(ring, [&] { load_scenario("f.toml", sets({text}), {}); });
+  }
+  EXPECT_GT(read, 20);
+  EXPECT_GT(refused, 500);
+}
+
+}  // namespace
+}  // namespace hearsay

@@ -1,0 +1,144 @@
+// What is missing: runs, values, whole cells.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "sim/kernel/error.hpp"
+#include "tests/tools/analysis/bed.hpp"
+
+namespace hearsay::analysis {
+namespace {
+
+using Kind = Expectation::Kind;
+using testing::HasSubstr;
+
+Value text(const char* label) { return std::string(label); }
+
+TEST(WhatIsLeftOut, FailedAndAbsentRunsAreNotedAndPairsStillMatch) {
+  Bed bed(10, 1);
+  bed.axis("rule", {text("none"), text("ci")});
+  bed.fill([](const Asked& asked, Rows& rows) {
+    const bool ci = asked.labels.at("rule") == "ci";
+    // Paired wrongly (by place, not by repetition) the differences would be far from −1.
+    rows.scalar(0, "cost", 100.0 * asked.repetition - (ci ? 1.0 : 0.0));
+    if (ci && asked.repetition == 2) return Outcome::failed;
+    if (!ci && asked.repetition == 5) return Outcome::absent;
+    return Outcome::finished;
+  });
+  Expectation expect = expects("cost", Kind::less_than);
+  expect.where["rule"] = {text("ci")};
+  expect.than["rule"] = {text("none")};
+  const ClaimResult result = bed.judge(expect);
+  EXPECT_EQ(result.verdict, Verdict::reproduced);
+  EXPECT_EQ(result.repetitions, 8);
+  EXPECT_NEAR(result.worst.estimate, -1.0, 1e-9);
+  EXPECT_THAT(result.note, HasSubstr("1 of 10 runs are missing (1 of them failed)"));
+  EXPECT_THAT(result.note, HasSubstr("1 repetitions left out: no finished run to pair them with"));
+}
+
+TEST(WhatIsLeftOut, ACellWithoutRunsKeepsAClaimFromBeingReproduced) {
+  Bed bed(3, 1);
+  bed.axis("rule", {text("none"), text("ci")});
+  bed.fill([](const Asked& asked, Rows& rows) {
+    rows.scalar(0, "cost", asked.repetition);
+    return asked.labels.at("rule") == "ci" ? Outcome::absent : Outcome::finished;
+  });
+  const ClaimResult result = bed.judge(at_most("cost", 100.0));
+  EXPECT_EQ(result.verdict, Verdict::undecided);
+  EXPECT_EQ(result.open, 1u);
+  EXPECT_EQ(result.worst_where, "rule=ci");
+  EXPECT_THAT(result.note, HasSubstr("no finished run in 1 cells, the first rule=ci"));
+}
+
+TEST(WhatIsLeftOut, MissingValuesAreCounted) {
+  Bed bed(10, 1);
+  bed.fill([](const Asked& asked, Rows& rows) {
+    rows.series(5.0, 0, "entropy_nats", asked.repetition <= 3 ? null : -1.0 * asked.repetition);
+    return Outcome::finished;
+  });
+  const ClaimResult result = bed.judge(at_most("entropy_nats", 0.0));
+  EXPECT_EQ(result.verdict, Verdict::reproduced);
+  EXPECT_EQ(result.missing_values, 3u);
+  EXPECT_EQ(result.repetitions, 7);
+}
+
+TEST(WhatIsLeftOut, WithoutAnyValueNothingIsDecided) {
+  Bed bed(4, 1);
+  bed.fill([](const Asked&, Rows& rows) {
+    rows.series(5.0, 0, "entropy_nats", null);
+    return Outcome::finished;
+  });
+  const ClaimResult result = bed.judge(at_most("entropy_nats", 0.0));
+  EXPECT_EQ(result.verdict, Verdict::undecided);
+  EXPECT_TRUE(std::isnan(result.worst.estimate));
+  EXPECT_THAT(result.note, HasSubstr("fewer than two values"));
+  const ClaimResult unknown = bed.judge(at_most("never_recorded", 0.0));
+  EXPECT_EQ(unknown.verdict, Verdict::undecided);
+  EXPECT_THAT(unknown.note, HasSubstr("the database has no values of never_recorded"));
+}
+
+TEST(WhatIsLeftOut, AnInstantThatLosesAllValuesStaysOpen) {
+  Bed bed(4, 1);
+  bed.fill([](const Asked&, Rows& rows) {
+    for (const double t_s : {0.0, 5.0, 7.0, 9.0}) {
+      rows.series(t_s, 0, "nees", t_s == 5.0 || t_s == 9.0 ? 2.0 : null);
+    }
+    return Outcome::finished;
+  });
+  Expectation expect = banded("anees", Kind::within);
+  expect.at = "all";
+  const ClaimResult result = bed.judge(expect);
+  EXPECT_EQ(result.verdict, Verdict::undecided);
+  EXPECT_EQ(result.comparisons, 3u);
+  EXPECT_EQ(result.open, 1u);
+  EXPECT_EQ(result.worst_where, "agent=0 t=7 s");
+}
+
+TEST(WhatIsLeftOut, OneValueOfSeveralRepetitionsIsNotEnough) {
+  Bed bed(2, 1);
+  bed.fill([](const Asked& asked, Rows& rows) {
+    rows.scalar(0, "cost", asked.repetition == 1 ? 1.0 : null);
+    return Outcome::finished;
+  });
+  EXPECT_EQ(bed.verdict(at_most("cost", 100.0)), Verdict::undecided);
+}
+
+TEST(WhatIsLeftOut, AStudyOfOneRunSpeaksOfThatRun) {
+  Bed bed(1, 1);
+  bed.fill([](const Asked&, Rows& rows) {
+    rows.scalar(0, "cost", 3.0);
+    return Outcome::finished;
+  });
+  const ClaimResult result = bed.judge(at_most("cost", 3.0));
+  EXPECT_EQ(result.verdict, Verdict::reproduced);
+  EXPECT_EQ(result.worst.low, 3.0);
+  EXPECT_EQ(result.worst.high, 3.0);
+  EXPECT_EQ(result.note, "one run, no interval");
+  EXPECT_EQ(bed.verdict(at_most("cost", 2.9)), Verdict::not_reproduced);
+}
+
+TEST(WhatIsLeftOut, RunsOfCellsThatTheStudyNoLongerHasAreNoted) {
+  Bed bed(2, 1);
+  bed.axis("rule", {text("none"), text("ci")});
+  bed.fill([](const Asked&, Rows& rows) {
+    rows.scalar(0, "cost", 3.0);
+    return Outcome::finished;
+  });
+  bed.study.axes[0].points.pop_back();
+  EXPECT_THAT(bed.judge(at_most("cost", 3.0)).note, HasSubstr("2 runs of other cells"));
+}
+
+TEST(WhatIsLeftOut, ADatabaseWithoutTheStudyIsRefused) {
+  Bed bed(1, 1);
+  bed.fill([](const Asked&, Rows&) { return Outcome::finished; });
+  bed.study.name = "made up too";
+  try {
+    bed.judge(at_most("cost", 3.0));
+    FAIL() << "judged";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("no run of study 'made up too'"));
+    EXPECT_THAT(error.what(), HasSubstr(bed.file()));
+  }
+}
+
+}  // namespace
+}  // namespace hearsay::analysis

@@ -1,0 +1,135 @@
+"""What each verb prints and leaves behind."""
+import csv
+import json
+import sqlite3
+import unittest
+
+from bed import SOURCE, Bed
+
+
+class Verbs(Bed):
+    def test_every_verb_has_help_with_examples(self):
+        overview = self.good("--help")
+        for verb in ["run", "sweep", "compare", "reproduce", "check", "list", "diff", "export"]:
+            self.assertIn(verb, overview)
+            help_text = self.good(verb, "--help")
+            self.assertIn("Examples:", help_text)
+            self.assertIn(f"hearsay {verb} ", help_text)
+
+    def test_run_prints_a_table_and_a_digest(self):
+        text = self.good("run", "ring.toml")
+        self.assertIn("estimator3", text)
+        self.assertIn("central", text)
+        self.assertIn("time reached at 30 s", text)
+        digest = self.good("run", "ring.toml", "--digest").strip()
+        self.assertRegex(digest, r"^xxh3-128/1:[0-9a-f]{32}\+[0-9a-f]{32}$")
+        self.assertIn(digest, text)
+
+    def test_seeds_and_settings_change_the_digest_and_the_ledger_does_not(self):
+        digest = self.good("run", "ring.toml", "--digest").strip()
+        self.assertNotEqual(digest, self.good("run", "ring.toml", "--digest", "--seed", "2").strip())
+        naive = self.good("run", "ring.toml", "--digest", "--set", "agents.estimator.fusion=naive")
+        self.assertNotEqual(digest, naive.strip())
+        off = self.good("run", "ring.toml", "--digest", "--set", "record.ledger=off").strip()
+        self.assertEqual(off, digest.split("+")[0])
+
+    def test_run_as_json_and_in_a_database_say_the_same(self):
+        shown = json.loads(self.good("run", "ring.toml", "--json", "--out", "a.db"))
+        database = sqlite3.connect(self.dir / "a.db")
+        (digest, reason, seed) = database.execute("SELECT digest, reason, seed FROM run").fetchone()
+        self.assertEqual((shown["digest"], shown["reason"], shown["seed"]), (digest, reason, seed))
+        for agent in shown["agents"]:
+            for name, value in agent["scalars"].items():
+                row = database.execute("SELECT value FROM scalar WHERE agent = ? AND name = ?",
+                                       (agent["id"], name)).fetchone()
+                self.assertEqual(row[0], value)
+        database.close()
+
+    def test_runs_append_and_diff_names_the_first_row_that_differs(self):
+        self.good("run", "ring.toml", "--out", "a.db")
+        self.good("run", "ring.toml", "--out", "a.db", "--seed", "2")
+        self.good("run", "ring.toml", "--out", "b.db")
+        self.assertEqual(self.good("diff", "a.db", "b.db", "--run-a", "1", "--run-b", "1"), "the same\n")
+        other = self.command("diff", "a.db", "b.db")
+        self.assertEqual(other.returncode, 1)
+        self.assertIn("run 2", other.stdout)
+        differ = self.command("diff", "a.db", "a.db", "--run-a", "1", "--run-b", "2")
+        self.assertEqual(differ.returncode, 1)
+        self.assertIn(" | ", differ.stdout)
+
+    def test_messages_are_kept_on_request(self):
+        self.good("run", "ring.toml", "--out", "a.db", "--set", "record.messages=all")
+        database = sqlite3.connect(self.dir / "a.db")
+        fates = dict(database.execute("SELECT fate, count(*) FROM message GROUP BY fate"))
+        for fate, count in fates.items():
+            total = database.execute("SELECT sum(value) FROM scalar WHERE name = ?",
+                                     (f"packets_{fate}",)).fetchone()[0]
+            self.assertEqual(total, count)
+        self.assertGreater(fates["delivered"], 20)
+        sent, arrived = database.execute("SELECT sent_s, arrived_s FROM message LIMIT 1").fetchone()
+        self.assertGreater(arrived, sent)
+        database.close()
+
+    def test_export_writes_each_table(self):
+        self.good("sweep", "ring.study.toml", "--out", "a.db")
+        self.good("export", "a.db", "--csv", "csv")
+        with open(self.dir / "csv" / "series.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(list(rows[0]), ["run", "t_s", "agent", "subject", "name", "value"])
+        database = sqlite3.connect(self.dir / "a.db")
+        self.assertEqual(len(rows), database.execute("SELECT count(*) FROM series").fetchone()[0])
+        value = database.execute("SELECT value FROM series WHERE run = 1 AND t_s = 30 AND agent = 0 "
+                                 "AND name = 'nees'").fetchone()[0]
+        exported = [r["value"] for r in rows
+                    if (r["run"], float(r["t_s"]), r["agent"], r["name"]) == ("1", 30.0, "0", "nees")]
+        self.assertEqual(float(exported[0]), value)
+        database.close()
+
+    def test_compare_pairs_repetitions(self):
+        self.good("sweep", "ring.study.toml", "--out", "a.db")
+        rows = json.loads(self.good("compare", "a.db", "--metric", "ledger_anees", "--by", "rule",
+                                    "--baseline", "none", "--json"))
+        naive = [row for row in rows if row["rule"] == "naive"]
+        self.assertEqual(len(naive), 2)
+        for row in naive:
+            self.assertEqual((row["verdict"], row["pairs"]), ("higher", 6))
+        text = self.good("compare", "a.db", "--metric", "rms_error_m", "--by", "loss")
+        self.assertIn("baseline", text)
+
+    def test_list_shows_what_there_is(self):
+        rules = json.loads(self.good("list", "rules", "--json"))["rules"]
+        names = [rule["name"] for rule in rules]
+        self.assertEqual(names, ["none", "naive", "channel", "channel-robust", "ci-det", "ci-trace"])
+        for rule in rules:
+            self.assertTrue(rule["assumes"] and rule["conservative"] and rule["source"])
+        self.assertIn("rumour/rumour.study.toml", self.good("list", "scenarios"))
+        self.assertIn("radio.rate_bps", self.good("list", "radios"))
+        self.assertIn("sigma_along_m", self.good("list", "sensors"))
+        recorded = {name for (name,) in self.scalars()}
+        listed = {m["name"] for m in json.loads(self.good("list", "metrics", "--json"))["metrics"]}
+        self.assertLessEqual(recorded, listed)
+
+    def scalars(self):
+        self.good("run", "ring.toml", "--out", "s.db")
+        database = sqlite3.connect(self.dir / "s.db")
+        rows = database.execute("SELECT DISTINCT name FROM scalar UNION SELECT name FROM series").fetchall()
+        database.close()
+        return rows
+
+    def test_reproduce_redoes_a_study_and_goes_on_where_it_stopped(self):
+        text = self.good("reproduce", "rumour/trees", "--out", "results", "--strict")
+        self.assertIn("1080 runs, 1080 new", text)
+        self.assertEqual(text.count("  reproduced  "), 3, text)
+        self.assertIn("1080 runs, 0 new", self.good("reproduce", "rumour/trees", "--out", "results"))
+        report = json.loads((self.dir / "results/rumour/trees-claims.json").read_text())
+        claims = report["claims"] if isinstance(report, dict) else report
+        self.assertEqual([c["verdict"] for c in claims], ["reproduced"] * 3)
+
+    def test_shipped_files_are_in_order(self):
+        files = sorted(str(f) for f in (SOURCE / "scenarios").rglob("*.toml"))
+        self.assertGreaterEqual(len(files), 5)
+        self.good("check", *files)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,183 @@
+// Beacons: n radios, about ten in range of each, broadcast 200 bytes every second at a phase of
+// their own over 1 Mbit/s with 10 % loss, for 60 s. An item is a packet at one hearer, lost or not.
+//
+// The floor does the same with plain arrays: neighbours in compressed rows, one entry of a
+// std::priority_queue a beacon and a delivery, the same keyed draws; it records nothing. Ours is
+// Radio with a heap event a packet, every fate counted and fed to the digest.
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <queue>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "net/radio.hpp"
+#include "sim/kernel/random.hpp"
+#include "sim/kernel/simulation.hpp"
+#include "sim/record/digest.hpp"
+
+namespace hearsay {
+namespace {
+
+constexpr std::uint64_t seed = 1;
+constexpr double range_m = 100.0;
+constexpr double neighbours_mean = 10.0;
+constexpr double rate_bps = 1e6;
+constexpr double loss_probability = 0.1;
+constexpr std::size_t beacon_bytes = 200;
+constexpr Duration period = 1_s;
+constexpr Time end = Time::at(60_s);
+
+struct Layout {
+  Topology topology;
+  std::vector<Duration> phase;
+};
+
+Layout make_layout(int agents) {
+  // At this density a disk of the range holds the mean number of neighbours (fewer at the rim).
+  const double side_m = range_m * std::sqrt(3.141592653589793 * agents / neighbours_mean);
+  std::vector<std::array<double, 3>> positions_m;
+  std::vector<Duration> phase;
+  for (AgentId a = 0; a < agents; ++a) {
+    Stream place(seed, Purpose("place"), Entity::agent(a));
+    const double x_m = place.uniform(0.0, side_m);
+    const double y_m = place.uniform(0.0, side_m);
+    positions_m.push_back({x_m, y_m, 0.0});
+    const auto period_ns = static_cast<std::uint64_t>(period.nanoseconds());
+    phase.push_back(Duration::nanoseconds(static_cast<std::int64_t>(place.below(period_ns))));
+  }
+  return {Topology::disk(positions_m, range_m), std::move(phase)};
+}
+
+struct Tally {
+  std::uint64_t heard = 0;
+  std::uint64_t lost = 0;
+  std::uint64_t in_flight = 0;
+  bool operator==(const Tally&) const = default;
+};
+
+Tally run_floor(const Layout& layout) {
+  struct Entry {
+    std::int64_t time_ns;
+    std::uint64_t sequence;
+    std::uint64_t tick;
+    AgentId sender;
+    AgentId receiver;                           // no_agent: the sender's next beacon
+    bool operator<(const Entry& other) const {  // the queue's top is its largest
+      return time_ns != other.time_ns ? time_ns > other.time_ns : sequence > other.sequence;
+    }
+  };
+  const int agents = layout.topology.agents();
+  const std::int64_t air_ns = std::llround(1e9 * 8.0 * beacon_bytes / rate_bps);
+  std::vector<std::int64_t> free_at_ns(static_cast<std::size_t>(agents), 0);
+  std::priority_queue<Entry> queue;
+  std::uint64_t sequence = 0;
+  Tally tally;
+  for (AgentId a = 0; a < agents; ++a) {
+    queue.push(
+        {layout.phase[static_cast<std::size_t>(a)].nanoseconds(), sequence++, 0, a, no_agent});
+  }
+  while (!queue.empty() && queue.top().time_ns <= end.nanoseconds()) {
+    const Entry entry = queue.top();
+    queue.pop();
+    if (entry.receiver == no_agent) {
+      std::int64_t& free_ns = free_at_ns[static_cast<std::size_t>(entry.sender)];
+      free_ns = std::max(free_ns, entry.time_ns) + air_ns;
+      for (const AgentId hearer : layout.topology.neighbours(entry.sender)) {
+        queue.push({free_ns, sequence++, entry.tick, entry.sender, hearer});
+      }
+      queue.push({entry.time_ns + period.nanoseconds(), sequence++, entry.tick + 1, entry.sender,
+                  no_agent});
+    } else if (Stream::at(seed, Purpose("loss of a tick"),
+                          Entity::link(entry.sender, entry.receiver), entry.tick)
+                   .bernoulli(loss_probability)) {
+      ++tally.lost;
+    } else {
+      ++tally.heard;
+    }
+  }
+  for (; !queue.empty(); queue.pop()) tally.in_flight += queue.top().receiver != no_agent;
+  return tally;
+}
+
+class Beacon final : public Receiver {
+ public:
+  Beacon(Simulation& simulation, Radio& radio, AgentId me)
+      : simulation_(simulation), radio_(radio), me_(me) {
+    radio.attach(me, *this);
+  }
+  void talk() {
+    static constexpr std::array<std::byte, beacon_bytes> payload{};
+    radio_.send(me_, {.kind = 0, .bytes = payload, .tick = tick_++});
+    simulation_.schedule(simulation_.now() + period, Phase::act, [this] { talk(); });
+  }
+  void on_packet(const Packet&) override { ++heard; }
+  std::uint64_t heard = 0;
+
+ private:
+  Simulation& simulation_;
+  Radio& radio_;
+  AgentId me_;
+  std::uint64_t tick_ = 0;
+};
+
+Tally run_ours(const Layout& layout) {
+  Xxh3Digest digest;
+  Simulation simulation({.seed = seed, .end = end, .record = {.digest = &digest}});
+  Radio radio(simulation, layout.topology,
+              {.rate_bps = rate_bps, .loss_probability = loss_probability});
+  std::vector<std::unique_ptr<Beacon>> beacons;
+  for (AgentId a = 0; a < layout.topology.agents(); ++a) {
+    beacons.push_back(std::make_unique<Beacon>(simulation, radio, a));
+    simulation.schedule(Time::at(layout.phase[static_cast<std::size_t>(a)]), Phase::act,
+                        [beacon = beacons.back().get()] { beacon->talk(); });
+  }
+  simulation.run();
+  radio.finish();
+  simulation.record().finish();
+  benchmark::DoNotOptimize(digest.hex());
+  Tally tally;
+  for (const auto& beacon : beacons) tally.heard += beacon->heard;
+  for (AgentId a = 0; a < layout.topology.agents(); ++a) {
+    const auto& fates = radio.counts(a).fates;
+    tally.lost += fates[static_cast<std::size_t>(Fate::lost)];
+    tally.in_flight += fates[static_cast<std::size_t>(Fate::in_flight_at_end)];
+  }
+  return tally;
+}
+
+template <Tally (*run)(const Layout&)>
+void beacon(benchmark::State& state, int agents) {
+  const Layout layout = make_layout(agents);
+  Tally tally;
+  for (auto _ : state) {
+    tally = run(layout);
+    benchmark::DoNotOptimize(tally);
+  }
+  // A rate is worth something only if both do the same work.
+  if (tally != run_floor(layout)) state.SkipWithError("fates differ from the floor's");
+  const auto deliveries = static_cast<double>(tally.heard + tally.lost);
+  state.counters["deliveries"] = deliveries;
+  state.counters["deliveries_per_s"] = benchmark::Counter(
+      deliveries * static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
+}
+
+const bool registered = [] {
+  for (const int agents : {100, 1'000, 10'000}) {
+    const std::string size = std::to_string(agents);
+    benchmark::RegisterBenchmark(("floor/beacon/" + size).c_str(), beacon<run_floor>, agents)
+        ->Unit(benchmark::kMillisecond);
+    benchmark::RegisterBenchmark(("ours/beacon/" + size).c_str(), beacon<run_ours>, agents)
+        ->Unit(benchmark::kMillisecond);
+  }
+  return true;
+}();
+
+}  // namespace
+}  // namespace hearsay

@@ -1,0 +1,125 @@
+// hearsay list: what there is to choose from.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "agents/metrics.hpp"
+#include "filters/gaussian/fusion.hpp"
+#include "scenarios/schema.hpp"
+#include "tools/hearsay/share.hpp"
+#include "tools/hearsay/verbs.hpp"
+
+namespace hearsay::program {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json rules() {
+  Json out = Json::array();
+  for (const gaussian::RuleInfo& rule : gaussian::rules()) {
+    out.push_back({{"name", rule.name},
+                   {"assumes", rule.assumes},
+                   {"conservative", rule.conservative},
+                   {"ledger", rule.ledger},
+                   {"source", rule.source}});
+  }
+  return out;
+}
+
+Json metrics_list(const Catalog& catalog) {
+  constexpr std::array tables = {"series", "scalar", "derived"};
+  Json out = Json::array();
+  for (const MetricInfo& metric : metrics()) {
+    out.push_back({{"name", metric.name},
+                   {"table", tables[static_cast<std::size_t>(metric.table)]},
+                   {"over repetitions", metric.aggregate == Aggregate::rms ? "rms" : "mean"},
+                   {"meaning", metric.meaning}});
+  }
+  for (const Catalog::OwnMetric& metric : catalog.metrics()) {
+    out.push_back({{"name", metric.name}, {"table", "series"}, {"meaning", metric.meaning}});
+  }
+  return out;
+}
+
+Json agents(const Catalog& catalog) {
+  Json out = Json::array();
+  out.push_back(
+      {{"name", "estimator"},
+       {"meaning", "looks, updates its beliefs, talks now and then, fuses what it hears"}});
+  for (const auto& [name, kind] : catalog.agents()) {
+    out.push_back({{"name", name}, {"meaning", kind.meaning}});
+  }
+  return out;
+}
+
+/// The keys of scenario files below `prefix`.
+Json keys(const std::string& prefix) {
+  Json out = Json::array();
+  for (const KeyInfo& key : schema_keys()) {
+    if (!key.path.starts_with(prefix)) continue;
+    out.push_back({{"name", key.path},
+                   {"type", key.type},
+                   {"default", key.default_value},
+                   {"allowed", key.allowed},
+                   {"meaning", key.meaning}});
+  }
+  return out;
+}
+
+Json scenarios() {
+  Json out = Json::array();
+  const auto root = share_directory() / "scenarios";
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(root)) {
+    if (entry.path().extension() == ".toml") files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  for (const auto& file : files) {
+    const bool study = file.string().ends_with(".study.toml");
+    out.push_back({{"name", std::filesystem::relative(file, root).string()},
+                   {"kind", study ? "study" : "scenario"},
+                   {"file", file.string()}});
+  }
+  return out;
+}
+
+void print(const std::string& title, const Json& rows) {
+  fmt::print("{}\n", title);
+  for (const Json& row : rows) {
+    fmt::print("  {}\n", row["name"].get<std::string>());
+    for (const auto& [key, value] : row.items()) {
+      if (key == "name" || value.get<std::string>().empty()) continue;
+      fmt::print("      {}: {}\n", key, value.get<std::string>());
+    }
+  }
+  fmt::print("\n");
+}
+
+}  // namespace
+
+int list(const ListVerb& verb, const Catalog& catalog) {
+  const std::vector<std::pair<std::string, std::function<Json()>>> topics = {
+      {"rules", rules},
+      {"radios", [] { return keys("radio."); }},
+      {"sensors", [] { return keys("agents.sensor."); }},
+      {"agents", [&] { return agents(catalog); }},
+      {"metrics", [&] { return metrics_list(catalog); }},
+      {"keys", [] { return keys(""); }},
+      {"scenarios", scenarios},
+  };
+  Json out = Json::object();
+  for (const auto& [topic, make] : topics) {
+    if (verb.what == topic || (verb.what == "all" && topic != "keys")) out[topic] = make();
+  }
+  if (verb.json) {
+    fmt::print("{}\n", out.dump(2));
+    return exit_done;
+  }
+  for (const auto& [topic, rows] : out.items()) print(topic, rows);
+  return exit_done;
+}
+
+}  // namespace hearsay::program

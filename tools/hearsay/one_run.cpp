@@ -1,0 +1,34 @@
+#include "tools/hearsay/one_run.hpp"
+
+#include <chrono>
+#include <filesystem>
+
+namespace hearsay::program {
+
+FinishedRun execute(const std::shared_ptr<const PreparedScenario>& prepared, const Catalog& catalog,
+                    std::uint64_t seed) {
+  const auto begin = std::chrono::steady_clock::now();
+  Xxh3Digest digest, ledger_digest;
+  FinishedRun finished;
+  finished.run = std::make_unique<Run>(
+      prepared, catalog,
+      Run::Options{.seed = seed, .digest = &digest, .ledger_digest = &ledger_digest});
+  finished.end = finished.run->run();
+  const bool ledger = prepared->scenario.record.ledger == "on";
+  finished.digest = digest_text(digest, ledger ? &ledger_digest : nullptr);
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
+  finished.wall_s = wall.count();
+  return finished;
+}
+
+std::string scenario_hash(Scenario scenario) {
+  if (scenario.world.log) {
+    std::string& directory = scenario.world.log->directory;
+    directory = std::filesystem::path(directory + "/").parent_path().filename().string();
+  }
+  return text_digest(canonical_text(scenario));
+}
+
+std::string program_version() { return HEARSAY_VERSION; }
+
+}  // namespace hearsay::program

@@ -1,0 +1,29 @@
+// One run with its digest, ready to be stored.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "scenarios/run.hpp"
+#include "sim/record/digest.hpp"
+
+namespace hearsay::program {
+
+struct FinishedRun {
+  std::unique_ptr<Run> run;
+  RunEnd end;
+  std::string digest;
+  double wall_s = 0.0;
+};
+
+/// Executes the scenario with `seed`. A failure in the run is in `end`, not an exception.
+FinishedRun execute(const std::shared_ptr<const PreparedScenario>& prepared, const Catalog& catalog,
+                    std::uint64_t seed);
+
+/// The config_hash of a scenario: of its content, whatever folder a log lies in.
+std::string scenario_hash(Scenario scenario);
+
+/// The version that goes with results: of the program.
+std::string program_version();
+
+}  // namespace hearsay::program

@@ -1,6 +1,5 @@
 #include "agents/witness.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -145,10 +144,9 @@ void Witness::measure_ledger(const TrackedBelief& tracked, int subject, Values& 
   at(values, Metric::true_sigma_m) = std::sqrt(P->trace() / n);
   at(values, Metric::ledger_anees) = belief.omega.cwiseProduct(*P).sum() / n;
   const auto estimate = gaussian::state(belief);
-  const Eigen::LLT<gaussian::Matrix> llt(*P);
-  if (!estimate || llt.info() != Eigen::Success) return;
-  const gaussian::Vector e = *estimate - truth(subject);
-  at(values, Metric::ledger_nees) = e.dot(gaussian::Vector(llt.solve(e)));
+  if (!estimate) return;
+  at(values, Metric::ledger_nees) =
+      gaussian::mahalanobis_squared(*estimate - truth(subject), *P).value_or(kNone);
 }
 
 gaussian::Vector Witness::truth(int subject) const {

@@ -192,6 +192,15 @@ std::optional<double> nees(const Belief& belief, const Vector& truth) {
   return if_finite(quadratic(belief.omega, *mu - truth));
 }
 
+std::optional<double> mahalanobis_squared(const Vector& e, const Matrix& P) {
+  require(P.rows() == e.size(), "mahalanobis_squared: dimensions differ");
+  const Scaled scaled = scale(P);
+  if (scaled.definiteness != Definiteness::positive) return std::nullopt;
+  Matrix De = e;  // P⁻¹ = D M⁻¹ D
+  scale_rows(De, scaled.factor);
+  return if_finite(De.cwiseProduct(solve(scaled, De)).sum());
+}
+
 std::optional<double> claimed_sigma(const Belief& belief) {
   const auto sigma = covariance(belief);
   if (!sigma) return std::nullopt;

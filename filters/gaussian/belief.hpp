@@ -73,6 +73,9 @@ std::optional<double> kl_divergence_nats(const Belief& p, const Belief& q);
 /// negative for an indefinite Ω.
 std::optional<double> nees(const Belief& belief, const Vector& truth);
 
+/// eᵀP⁻¹e of an error e (n) under a covariance P (n×n); nothing unless P is positive definite.
+std::optional<double> mahalanobis_squared(const Vector& e, const Matrix& P);
+
 /// √(tr Σ / n): claimed standard deviation per axis; nothing unless positive definite.
 std::optional<double> claimed_sigma(const Belief& belief);
 

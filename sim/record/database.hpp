@@ -11,8 +11,8 @@
 //   event(run, t_s, agent, kind, detail)
 // Names are stored once, as integers; the views show them as text. NaN is stored as NULL, −0 as 0;
 // a sender, receiver or agent that is nobody is NULL. Times are the double nearest to the simulated
-// nanoseconds. A query is fast that names the run (run = …, or a join with run or axis): the rows
-// of a run lie together and are found by its number.
+// nanoseconds. The rows of a run lie together and are found by its number, so a query is fast that
+// gives the run first: run = …, run IN (SELECT run FROM axis …), or axis JOIN series in this order.
 //
 // A run is whole or absent: one transaction each batch of runs, write-ahead log, one writer. Runs
 // must be added in ascending id, so a sweep that was killed leaves a prefix and its continuation
@@ -60,6 +60,7 @@ struct RunRow {
   std::string version;
 };
 
+/// One thread at a time.
 class DatabaseWriter {
  public:
   /// Opens or makes `file`. It is this writer's alone until it is closed (others can read it).

@@ -18,7 +18,8 @@ CREATE TABLE name(id INTEGER PRIMARY KEY, text TEXT NOT NULL UNIQUE);
 CREATE TABLE quantity(id INTEGER PRIMARY KEY, agent INTEGER NOT NULL, subject TEXT,
                       name TEXT NOT NULL);
 CREATE TABLE agent_set(id INTEGER NOT NULL, place INTEGER NOT NULL, agent INTEGER NOT NULL,
-                       name TEXT NOT NULL, kind TEXT NOT NULL, PRIMARY KEY(id, place)) WITHOUT ROWID;
+                       name TEXT NOT NULL, kind TEXT NOT NULL,
+                       PRIMARY KEY(id, place)) WITHOUT ROWID;
 CREATE TABLE axis_set(id INTEGER NOT NULL, place INTEGER NOT NULL, name TEXT NOT NULL,
                       value TEXT NOT NULL, PRIMARY KEY(id, place)) WITHOUT ROWID;
 CREATE TABLE run_row(id INTEGER PRIMARY KEY, study INTEGER REFERENCES study,
@@ -127,7 +128,7 @@ SQLite::Database open_to_read(const std::string& file) {
   const std::string path = plain_path(file);
   if (!std::filesystem::exists(path, ignored)) throw InputError(file, 0, "does not exist");
   try {
-    SQLite::Database database(path, SQLite::OPEN_READONLY, 10'000);
+    SQLite::Database database(path, SQLite::OPEN_READONLY | SQLite::OPEN_NOMUTEX, 10'000);
     if (is_new(database, file)) {
       throw InputError(file, 0, "is not a hearsay database (it is empty)");
     }

@@ -184,14 +184,6 @@ std::int64_t NameTable::id(const std::string& text) {
   return entry->second;
 }
 
-std::size_t QuantityTable::Hash::operator()(const Key& key) const {
-  std::uint64_t hash = static_cast<std::uint64_t>(key.agent);
-  for (const std::int64_t part : {key.subject, key.name}) {
-    hash = (hash ^ (hash >> 29)) * 0x9e3779b97f4a7c15 + static_cast<std::uint64_t>(part);
-  }
-  return static_cast<std::size_t>((hash ^ (hash >> 32)) * 0x9e3779b97f4a7c15 >> 16);
-}
-
 QuantityTable::QuantityTable(SQLite::Database& database, NameTable& names)
     : insert_(database,
               "INSERT INTO quantity(id, agent, subject, name) SELECT ?1, ?2, "
@@ -202,22 +194,29 @@ QuantityTable::QuantityTable(SQLite::Database& database, NameTable& names)
     const Key key{known.getColumn(1).getInt64(),
                   subject.isNull() ? 0 : names.id(subject.getString()),
                   names.id(known.getColumn(3).getString())};
-    ids_.emplace(key, known.getColumn(0).getInt64());
+    known_.emplace(key, Known{key, known.getColumn(0).getInt64()});
   }
 }
 
 std::int64_t QuantityTable::id(AgentId agent, std::int64_t subject, std::int64_t name) {
-  const auto [entry, added] =
-      ids_.try_emplace({agent, subject, name}, static_cast<std::int64_t>(ids_.size()) + 1);
-  if (added) {
-    insert_.reset();
-    insert_.bind(1, entry->second);
-    insert_.bind(2, static_cast<std::int64_t>(agent));
-    insert_.bind(3, subject);
-    insert_.bind(4, name);
-    insert_.exec();
+  const Key key{agent, subject, name};
+  Known* known = last_->next;  // rows come in the same order at every instant
+  if (known == nullptr || known->key != key) {
+    const auto [found, added] =
+        known_.try_emplace(key, Known{key, static_cast<std::int64_t>(known_.size()) + 1});
+    known = &found->second;
+    last_->next = known;
+    if (added) {
+      insert_.reset();
+      insert_.bind(1, known->id);
+      insert_.bind(2, key.agent);
+      insert_.bind(3, key.subject);
+      insert_.bind(4, key.name);
+      insert_.exec();
+    }
   }
-  return entry->second;
+  last_ = known;
+  return known->id;
 }
 
 ListTable::ListTable(SQLite::Database& database, const std::string& table,

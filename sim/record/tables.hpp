@@ -6,7 +6,6 @@
 #include <functional>
 #include <map>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
 #include "sim/kernel/ids.hpp"
@@ -83,19 +82,25 @@ class NameTable {
 class QuantityTable {
  public:
   QuantityTable(SQLite::Database& database, NameTable& names);
+  QuantityTable(const QuantityTable&) = delete;
+  QuantityTable& operator=(const QuantityTable&) = delete;
   /// `subject`, `name`: numbers in the name table, 0 for no subject.
   std::int64_t id(AgentId agent, std::int64_t subject, std::int64_t name);
 
  private:
   struct Key {
-    std::int64_t agent, subject, name;
-    bool operator==(const Key&) const = default;
+    std::int64_t agent = 0, subject = 0, name = 0;
+    auto operator<=>(const Key&) const = default;
   };
-  struct Hash {
-    std::size_t operator()(const Key& key) const;
+  struct Known {
+    Key key;
+    std::int64_t id = 0;
+    Known* next = nullptr;  ///< what was asked for after this the last time
   };
   SQLite::Statement insert_;
-  std::unordered_map<Key, std::int64_t, Hash> ids_;
+  std::map<Key, Known> known_;
+  Known first_;  ///< stands before any was asked for
+  Known* last_ = &first_;
 };
 
 /// Lists that many runs share, each stored once under a number from 1.

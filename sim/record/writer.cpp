@@ -51,7 +51,8 @@ SQLite::Database open_to_write(const std::string& file) {
   std::error_code ignored;
   const bool existed = std::filesystem::exists(path, ignored);
   try {
-    SQLite::Database database(path, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, 500);
+    SQLite::Database database(
+        path, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE | SQLite::OPEN_NOMUTEX, 500);
     is_new(database, file);  // before anything is written
     database.exec("PRAGMA synchronous = NORMAL");
     begin_alone(database);

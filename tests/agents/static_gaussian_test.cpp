@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
+
+#include "sim/kernel/random.hpp"
 
 namespace hearsay {
 namespace {

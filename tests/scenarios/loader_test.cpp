@@ -47,7 +47,12 @@ loss = { model = "bernoulli", probability = 0.25 }
 [[agents]]
 name = "base"
 position_m = [5, 6]
-sensor = { kind = "position", period_s = 2, start_s = 1, end_s = 9, sigma_along_m = 10, sigma_across_m = 1.5 }
+sensor.kind = "position"
+sensor.period_s = 2
+sensor.start_s = 1
+sensor.end_s = 9
+sensor.sigma_along_m = 10
+sensor.sigma_across_m = 1.5
 estimator = { kind = "static-gaussian", fusion = "channel-robust" }
 talk = { policy = "never", period_s = 4, phase = "together", phase_s = 3 }
 parameters = { gain = 2, "odd name" = 0.5 }

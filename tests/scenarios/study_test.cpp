@@ -60,10 +60,13 @@ TEST_F(StudyLoader, ACellSetsWhatItsLabelsSay) {
 }
 
 TEST_F(StudyLoader, PointsSetSeveralKeysAtOnce) {
-  const Study study = load(R"([axes.sensors]
+  const Study study =
+      load(R"([axes.sensors]
 points = [
   { label = "equal", set = { "agents.sensor.sigma_m" = 5.0 } },
-  { label = "split", set = { agents.sensor = { kind = "position", sigma_along_m = 9, sigma_across_m = 2 }, agents.circle.radius_m = 3 } },
+  { label = "split", set = {)"
+           R"(agents.sensor = { kind = "position", sigma_along_m = 9, sigma_across_m = 2 }, )"
+           R"(agents.circle.radius_m = 3 } },
 ]
 )");
   const auto all = cells(study);

@@ -66,7 +66,8 @@ class Tally {
   void add(const Finding& finding, const Comparison& comparison) {
     result_.failing += finding.side == Side::other;
     result_.open += finding.side == Side::open;
-    widest_ = std::max(widest_, finding.half_width);
+    result_.missing_values += finding.left_out;
+    half_widths_.push_back(finding.half_width);
     const int n = static_cast<int>(comparison.a.size());
     result_.repetitions = first_ ? n : std::min(result_.repetitions, n);
     // One that decides the verdict is shown before one that does not.
@@ -82,14 +83,23 @@ class Tally {
     first_ = false;
   }
 
-  double widest() const { return widest_; }
+  /// How sharp the intervals of an agreement are: one that is wider than its value says little.
+  std::string sharpness() {
+    std::sort(half_widths_.begin(), half_widths_.end());
+    if (half_widths_.empty() || half_widths_.back() <= 0.0) return "";
+    const auto vague =
+        half_widths_.end() - std::upper_bound(half_widths_.begin(), half_widths_.end(), 1.0);
+    return fmt::format(
+        "intervals are ±{:.2g} % wide (median), ±{:.2g} % at most; beyond ±100 %: {}",
+        100.0 * half_widths_[half_widths_.size() / 2], 100.0 * half_widths_.back(), vague);
+  }
 
  private:
   ClaimResult& result_;
   bool first_ = true;
   int rank_ = 0;
   double margin_ = 0.0;
-  double widest_ = 0.0;
+  std::vector<double> half_widths_;
 };
 
 ClaimResult judge_claim(const Study& study, const ClaimRules& rules, const Values& values,
@@ -122,13 +132,14 @@ ClaimResult judge_claim(const Study& study, const ClaimRules& rules, const Value
   if (study.repetitions == 1) {
     notes.push_back("one run, no interval");
   } else if (too_few > 0) {
-    notes.push_back(fmt::format("{} comparisons have fewer than two values", too_few));
+    notes.push_back(fmt::format("comparisons with fewer than two values: {}", too_few));
   }
-  if (rules.claim->expect.kind == Expectation::Kind::agrees_with && tally.widest() > 0.0) {
-    notes.push_back(fmt::format("widest interval ±{:.2g} %", 100.0 * tally.widest()));
+  if (rules.claim->expect.kind == Expectation::Kind::agrees_with) {
+    if (const std::string text = tally.sharpness(); !text.empty()) notes.push_back(text);
   }
   if (runs_without_cell > 0) {
-    notes.push_back(fmt::format("{} runs of other cells than the study's", runs_without_cell));
+    notes.push_back(
+        fmt::format("runs of cells that the study does not have: {}", runs_without_cell));
   }
   result.note = joined(notes);
   return result;

@@ -41,6 +41,7 @@
 //             "not reproduced". at_least, "overconfident": reproduced if all estimates are above
 //             the upper edge; not if the interval of one lies wholly below the upper edge of the
 //             band for a single comparison.
+// Bounds are kept and broken to 1e-12 of their size: what is equal but for rounding is equal.
 // A study with one repetition speaks of that run: its values count as exact, and the note says so.
 #pragma once
 

@@ -17,6 +17,7 @@ namespace hearsay::analysis {
 namespace {
 
 constexpr double alpha = 0.05;
+constexpr double equal_to_rounding = 1e-12;
 constexpr double same_instant_s = 1e-6;
 
 std::string only_study(const std::string& file, const CompareOptions& options) {
@@ -243,9 +244,10 @@ class Comparer {
       } else if (row.pairs == 0) {
         row.verdict = "no pairs";
       } else {
-        row.verdict = row.difference.high < 0.0  ? "lower"
-                      : row.difference.low > 0.0 ? "higher"
-                                                 : "no difference seen";
+        const double rounding = equal_to_rounding * std::abs(row.value.estimate);
+        row.verdict = row.difference.high < -rounding ? "lower"
+                      : row.difference.low > rounding ? "higher"
+                                                      : "no difference seen";
       }
       rows.push_back(std::move(row));
     }

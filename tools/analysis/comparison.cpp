@@ -275,24 +275,25 @@ class Builder {
   void note_what_was_left_out() {
     std::vector<std::string>& notes = result_.notes;
     if (runs_there_ < runs_expected_) {
-      notes.push_back(fmt::format("{} of {} runs are missing ({} of them failed)",
+      notes.push_back(fmt::format("missing runs: {} of {} (failed: {})",
                                   runs_expected_ - runs_there_, runs_expected_, runs_failed_));
     }
     if (runs_without_partner_ > 0) {
-      notes.push_back(fmt::format("{} repetitions left out: no finished run to pair them with",
+      notes.push_back(fmt::format("repetitions without a finished run to pair them with: {}",
                                   runs_without_partner_));
     }
     if (cells_without_runs_ > 0) {
-      notes.push_back(fmt::format("no finished run in {} cells, the first {}", cells_without_runs_,
+      notes.push_back(fmt::format("cells without a finished run: {}, the first {}",
+                                  cells_without_runs_,
                                   first_without_runs_.empty() ? "of all" : first_without_runs_));
     }
     if (cells_without_other_ > 0) {
-      notes.push_back(fmt::format("{} comparisons left out: the study skips the other cell",
+      notes.push_back(fmt::format("comparisons left out, for the study skips the other cell: {}",
                                   cells_without_other_));
     }
     if (instants_left_out_ > 0) {
       notes.push_back(
-          fmt::format("{} instants before the first value left out", instants_left_out_));
+          fmt::format("instants left out before the first value: {}", instants_left_out_));
     }
     if (subjects_averaged_) notes.push_back("subjects averaged within each run");
     if (column() == nullptr) {

@@ -13,7 +13,9 @@ namespace {
 using Kind = Expectation::Kind;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
-constexpr double forgiven_to_rounding = 1e-9;
+constexpr double forgiven_in_agreement = 1e-9;
+/// Values that differ by less, relative to their size, count as equal.
+constexpr double rounding = 1e-12;
 
 bool none_negative(const std::vector<double>& values) {
   return std::all_of(values.begin(), values.end(), [](double value) { return value >= 0.0; });
@@ -25,7 +27,11 @@ Interval mean_of(const std::vector<double>& values, double alpha) {
 
 std::vector<double> minus(const std::vector<double>& a, const std::vector<double>& b) {
   std::vector<double> differences(a.size());
-  std::transform(a.begin(), a.end(), b.begin(), differences.begin(), std::minus<>());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double difference = a[i] - b[i];
+    const bool equal = std::abs(difference) <= rounding * std::max(std::abs(a[i]), std::abs(b[i]));
+    differences[i] = equal ? 0.0 : difference;
+  }
   return differences;
 }
 
@@ -44,7 +50,8 @@ bool agrees_relatively(const ClaimRules& rules) {
 }
 
 /// Relative difference between a and its prediction b, repetition by repetition.
-Interval relative_difference(const ClaimRules& rules, const Comparison& c, double alpha) {
+Interval relative_difference(const ClaimRules& rules, const Comparison& c, double alpha,
+                             std::size_t& left_out) {
   const bool squares = rules.is_rms(rules.metric);
   std::vector<double> ratios;
   for (std::size_t i = 0; i < c.a.size(); ++i) {
@@ -52,6 +59,8 @@ Interval relative_difference(const ClaimRules& rules, const Comparison& c, doubl
     // A prediction may be negative: eᵀΩe of an indefinite belief.
     if ((squares ? c.b[i] > 0.0 : c.b[i] != 0.0) && std::isfinite(ratio * ratio)) {
       ratios.push_back(squares ? ratio * ratio : ratio);
+    } else {
+      ++left_out;
     }
   }
   if (ratios.empty()) return {undefined, -infinity, infinity};
@@ -77,11 +86,12 @@ Interval ratio(const ClaimRules& rules, const Comparison& c, double alpha) {
   return product(factors, alpha);
 }
 
-Interval estimate(const ClaimRules& rules, const Comparison& c, double alpha) {
+Interval estimate(const ClaimRules& rules, const Comparison& c, double alpha,
+                  std::size_t& left_out) {
   const bool extremes =
       rules.statistic == Statistic::largest || rules.statistic == Statistic::smallest;
   if (rules.trend) return mean_t(c.a, alpha);
-  if (agrees_relatively(rules)) return relative_difference(rules, c, alpha);
+  if (agrees_relatively(rules)) return relative_difference(rules, c, alpha, left_out);
   if (extremes) return extreme(rules.paired ? minus(c.a, c.b) : c.a, *rules.statistic);
   if (rules.statistic == Statistic::any) {
     const auto positive =
@@ -162,7 +172,7 @@ void decide_agreement(const Comparison& c, bool relative, Finding& finding) {
     for (const double value : c.b) scale += std::abs(value) / static_cast<double>(c.b.size());
   }
   finding.half_width = 0.5 * (i.high - i.low) / (scale > 0.0 ? scale : 1.0);
-  const double slack = forgiven_to_rounding * scale;
+  const double slack = forgiven_in_agreement * scale;
   finding.margin = std::min(i.high + slack, slack - i.low);
   finding.side = finding.margin >= 0.0 ? Side::claimed : Side::other;
   const double half = 0.5 * (i.high - i.low) + slack;
@@ -170,18 +180,19 @@ void decide_agreement(const Comparison& c, bool relative, Finding& finding) {
 }
 
 void decide(const Interval& i, bool strict, Finding& finding) {
-  const double inside_low = i.low - finding.bound_low;
-  const double inside_high = finding.bound_high - i.high;
-  finding.margin = std::min(finding.bound_low == -infinity ? infinity : inside_low,
-                            finding.bound_high == infinity ? infinity : inside_high);
-  if (strict ? finding.margin > 0.0 : finding.margin >= 0.0) {
+  const bool open_below = finding.bound_low == -infinity;
+  const bool open_above = finding.bound_high == infinity;
+  finding.margin = std::min(open_below ? infinity : i.low - finding.bound_low,
+                            open_above ? infinity : finding.bound_high - i.high);
+  // Beyond a bound by more than this; equal to it is claimed unless the claim is strict.
+  const double slack = rounding * std::max(open_below ? 0.0 : std::abs(finding.bound_low),
+                                           open_above ? 0.0 : std::abs(finding.bound_high));
+  const double beyond = std::max(open_below ? -infinity : finding.bound_low - i.high,
+                                 open_above ? -infinity : i.low - finding.bound_high);
+  if (strict ? finding.margin > slack : finding.margin >= -slack) {
     finding.side = Side::claimed;
-  } else if (strict) {
-    const bool beyond = i.low >= finding.bound_high || i.high <= finding.bound_low;
-    finding.side = beyond ? Side::other : Side::open;
-  } else {
-    const bool beyond = i.low > finding.bound_high || i.high < finding.bound_low;
-    finding.side = beyond ? Side::other : Side::open;
+  } else if (strict ? beyond >= -slack : beyond > slack) {
+    finding.side = Side::other;
   }
 }
 
@@ -198,7 +209,8 @@ Finding examine(const ClaimRules& rules, const Comparison& comparison, std::size
   if (n < 2 && !single) return finding;
   if (expect.chi2_band && comparison.state_dimension < 1) return finding;
 
-  finding.interval = estimate(rules, comparison, family_alpha / static_cast<double>(family));
+  finding.interval =
+      estimate(rules, comparison, family_alpha / static_cast<double>(family), finding.left_out);
   const Interval& interval = finding.interval;
   if (!std::isfinite(interval.estimate)) return finding;
   if (single) finding.interval = exactly(interval.estimate);

@@ -17,8 +17,9 @@ struct Finding {
   Interval interval;
   Side side = Side::open;
   double bound_low = 0.0, bound_high = 0.0;
-  double margin = 0.0;      ///< how far inside the claim; negative beyond the bound
-  double half_width = 0.0;  ///< agrees_with: of the interval, relative to the prediction
+  double margin = 0.0;       ///< how far inside the claim; negative beyond the bound
+  double half_width = 0.0;   ///< agrees_with: of the interval, relative to the prediction
+  std::size_t left_out = 0;  ///< agrees_with: values whose prediction is not positive
 };
 
 /// `family`: number of comparisons in the claim.

@@ -130,11 +130,11 @@ def limits(logs):
 
 def layout(logs):
     rows, rules = len(logs.topologies), len(logs.rules)
-    figure = style.new_figure(1.5 * rules + 3.9, 2.05 * rows + 2.05)
+    figure = style.new_figure(1.5 * rules + 3.9, 2.05 * rows + 2.11)
     height = figure.get_figheight()
     grid = figure.add_gridspec(
         rows, rules + 2, width_ratios=[1.0] * rules + [0.30, 1.7], wspace=0.1, hspace=0.13,
-        left=0.1, right=0.99, top=1 - 0.68 / height, bottom=1.40 / height,
+        left=0.1, right=0.99, top=1 - 0.68 / height, bottom=1.46 / height,
     )
     table = []
     for i in range(rows):
@@ -148,21 +148,21 @@ def layout(logs):
 
 def caption(logs):
     chosen = logs.chosen
-    first = (
+    sentences = [
         f"{logs.robots} robots, {logs.subjects} landmarks, logs of the UTIAS MRCLAM data sets over"
-        f" a simulated radio; {chosen.repetitions} repetitions of its losses. Root mean squares"
-        " over robots × landmarks, with the error's 95 % interval over repetitions."
-    )
-    second = (
+        f" a simulated radio; {chosen.repetitions} repetitions of its losses.",
+        "Root mean squares over robots × landmarks, with the error's 95 % interval over"
+        " repetitions.",
         "No band of consistency: the logs' errors are correlated in time, so that even a robot"
-        " alone claims too much. Hollow: beliefs without estimate, or indefinite, left out; no"
-        " curve where they are more than half."
-    )
+        " alone claims too much.",
+        "Hollow: some beliefs have no estimate and are left out; no curve where they are more than"
+        " half. Indefinite beliefs have an error, but no claim.",
+    ]
     if panels.any_negative(logs.series["multiplicity_mean"]):
-        second += " Multiplicities below 0 are not drawn."
+        sentences.append("Multiplicities below 0 are not drawn.")
     if chosen.failed:
-        second += f" {chosen.failed} failed runs left out."
-    return first + "\n" + second
+        sentences.append(f"{chosen.failed} failed runs left out.")
+    return sentences
 
 
 def headings(figure, table, logs):
@@ -200,12 +200,11 @@ def headings(figure, table, logs):
     kinds.append(
         panels.line_entry("", style.BLACK, f"numbers: mean distance at the end, {distances} loss")
     )
-    panels.legend(figure, (left, 0.52 / height), kinds, 3)
+    panels.legend(figure, (left, 0.58 / height), kinds, 3)
     # three rows: the panel above is narrow
     of_rules = panels.rule_entries(logs.rules)
-    panels.legend(figure, (counted - 0.012, 0.44 / height), of_rules, -(-len(of_rules) // 3))
-    figure.text(left, 0.40 / height, caption(logs), fontsize=7.5, va="top", ha="left",
-                color="#333333", linespacing=1.35)
+    panels.legend(figure, (counted - 0.012, 0.52 / height), of_rules, -(-len(of_rules) // 3))
+    panels.write_caption(figure, left, caption(logs))
 
 
 def main():

@@ -1,6 +1,7 @@
 """What the figures of the studies have in common: curves of a cell, panels of claim against truth,
 sketches of the topologies, legends."""
 
+import textwrap
 from dataclasses import dataclass
 
 import numpy as np
@@ -203,6 +204,16 @@ def legend(figure, anchor, entries, columns):
     figure.legend(
         handles=entries, loc="lower left", bbox_to_anchor=anchor, ncol=columns, fontsize=8.5,
         handlelength=2.5, columnspacing=1.3, handletextpad=0.6, borderaxespad=0.0,
+    )
+
+
+def write_caption(figure, left, sentences):
+    """What the runs were and how to read the figure, in small lines at the bottom."""
+    size = 7.5
+    width = (0.985 - left) * figure.get_figwidth() * 72.0 / (0.53 * size)  # in letters
+    figure.text(
+        left, 0.46 / figure.get_figheight(), textwrap.fill(" ".join(sentences), int(width)),
+        fontsize=size, va="top", ha="left", color="#333333", linespacing=1.35,
     )
 
 

@@ -66,7 +66,7 @@ def sigma_panel(axes, t_s, curves, color):
     panels.draw(axes, t_s, claimed, color, (0, (3.2, 1.4)), width=1.8, zorder=3.5)
     panels.draw(axes, t_s, ledger, style.BLACK, (0, (1.0, 1.5)), width=1.5, zorder=4)
     end_error, end_claim = error.value[-1], claimed.value[-1]
-    if np.isfinite(end_error) and np.isfinite(end_claim):
+    if undefined == 0 and np.isfinite(end_error) and np.isfinite(end_claim):
         panels.note(axes, f"error = {style.ratio(end_error / end_claim)} claim")
     if undefined > 0:
         panels.note(axes, f"{100 * undefined:.0f} % of beliefs\nindefinite at the end", "bottom")
@@ -118,32 +118,31 @@ def limits_of_multiplicity(rumour):
 
 def caption(rumour):
     chosen = rumour.chosen
-    first = (
+    sentences = [
         f"{rumour.agents} agents, 1 static target in {rumour.dimension}-D,"
-        f" {chosen.described('topology', 'rule')}; {chosen.repetitions} paired repetitions. Means"
-        " over agents (of squares for metres); error with its 95 % bootstrap interval over"
-        " repetitions."
-    )
-    second = (
+        f" {chosen.described('topology', 'rule')}; {chosen.repetitions} paired repetitions.",
+        "Means over agents (of squares for metres); error with its 95 % bootstrap interval over"
+        " repetitions.",
         "ANEES: bars from the least to the greatest agent; grey, where a consistent one lies with"
-        f" 95 %: dark for one value, light for all {rumour.comparisons} at once. Hollow: indefinite"
-        " beliefs left out; no curve where they are more than half."
-    )
+        f" 95 %: dark for one value, light for all {rumour.comparisons} at once.",
+        "Indefinite beliefs have an error, but no claim and no ANEES (hollow; no curve where they"
+        " are more than half).",
+    ]
     if panels.any_negative(rumour.series["multiplicity_mean"]):
-        second += " Multiplicities below 0 are not drawn."
+        sentences.append("Multiplicities below 0 are not drawn.")
     if chosen.failed:
-        second += f" {chosen.failed} failed runs left out."
-    return first + "\n" + second
+        sentences.append(f"{chosen.failed} failed runs left out.")
+    return sentences
 
 
 def layout(rumour):
     """Figure and a grid of axes: for each topology the rules' panels, ANEES, multiplicity."""
     rows, rules = len(rumour.topologies), len(rumour.rules)
-    figure = style.new_figure(1.38 * rules + 6.0, 2.05 * rows + 1.95)
+    figure = style.new_figure(1.38 * rules + 6.0, 2.05 * rows + 2.01)
     height = figure.get_figheight()
     grid = figure.add_gridspec(
         rows, rules + 4, width_ratios=[1.0] * rules + [0.30, 1.7, 0.36, 1.7], wspace=0.1,
-        hspace=0.13, left=0.088, right=0.992, top=1 - 0.68 / height, bottom=1.30 / height,
+        hspace=0.13, left=0.088, right=0.992, top=1 - 0.68 / height, bottom=1.36 / height,
     )
     table = []
     for i in range(rows):
@@ -187,10 +186,9 @@ def headings(figure, table, rumour):
         panels.fill_entry("claims too much: overconfident", True),
         panels.fill_entry("claims too little: gives away", False),
     ]
-    panels.legend(figure, (left, 0.52 / height), kinds, 3)
-    panels.legend(figure, (anees, 0.52 / height), panels.rule_entries(rumour.rules), 3)
-    figure.text(left, 0.40 / height, caption(rumour), fontsize=7.5, va="top", ha="left",
-                color="#333333", linespacing=1.35)
+    panels.legend(figure, (left, 0.58 / height), kinds, 3)
+    panels.legend(figure, (anees, 0.58 / height), panels.rule_entries(rumour.rules), 3)
+    panels.write_caption(figure, left, caption(rumour))
 
 
 def main():

@@ -21,6 +21,10 @@ FinishedRun execute(const std::shared_ptr<const PreparedScenario>& prepared, con
   return finished;
 }
 
+std::string how_it_ended(const RunEnd& end) {
+  return end.message.empty() ? to_string(end.reason) : end.message;
+}
+
 std::string scenario_hash(Scenario scenario) {
   if (scenario.world.log) {
     std::string& directory = scenario.world.log->directory;

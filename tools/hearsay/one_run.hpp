@@ -20,6 +20,9 @@ struct FinishedRun {
 FinishedRun execute(const std::shared_ptr<const PreparedScenario>& prepared, const Catalog& catalog,
                     std::uint64_t seed);
 
+/// The reason of a run's end, or the message of its failure.
+std::string how_it_ended(const RunEnd& end);
+
 /// The config_hash of a scenario: of its content, whatever folder a log lies in.
 std::string scenario_hash(Scenario scenario);
 

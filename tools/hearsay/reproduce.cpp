@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <deque>
 #include <filesystem>
 #include <fstream>
+#include <thread>
 
 #include "scenarios/run.hpp"
 #include "sim/kernel/error.hpp"
@@ -80,8 +82,14 @@ std::vector<Target> targets(const ReproduceVerb& verb) {
   return chosen;
 }
 
-/// Runs a figure script and waits for it. @throws InputError if it cannot be run or fails.
-void draw(const Figure& figure, const fs::path& database, const fs::path& output) {
+/// A figure script at work.
+struct Drawing {
+  pid_t child;
+  fs::path output;
+};
+
+/// Starts a figure script. @throws InputError if it cannot be started.
+Drawing start_drawing(const Figure& figure, const fs::path& database, const fs::path& output) {
   const fs::path script = share_directory() / "tools" / "figures" / figure.script;
   if (!fs::exists(script)) throw InputError(script.string(), 0, "no such figure script");
   std::vector<std::string> words = {"/usr/bin/python3", script.string(), database.string(),
@@ -96,12 +104,31 @@ void draw(const Figure& figure, const fs::path& database, const fs::path& output
     throw InputError(words[0] + " cannot be started (" + std::strerror(error) +
                      "); figures need python3 with numpy and matplotlib");
   }
+  return {child, output};
+}
+
+bool finish_drawing(const Drawing& drawing) {
   int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  while (waitpid(drawing.child, &status, 0) < 0 && errno == EINTR) {
   }
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
-    throw InputError("the figure " + output.string() + " could not be drawn (see above)");
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+/// Draws all figures of a study, `at_once` at a time. @throws InputError if one fails, after all.
+void draw(const Study& study, const fs::path& database, const fs::path& results,
+          std::size_t at_once) {
+  std::string failed;
+  std::deque<Drawing> drawings;
+  const auto finish_first = [&] {
+    if (!finish_drawing(drawings.front())) failed = drawings.front().output.string();
+    drawings.pop_front();
+  };
+  for (const Figure& figure : study.figures) {
+    if (drawings.size() >= at_once) finish_first();
+    drawings.push_back(start_drawing(figure, database, results / figure.output));
   }
+  while (!drawings.empty()) finish_first();
+  if (!failed.empty()) throw InputError(failed, 0, "could not be drawn (see above)");
 }
 
 std::string read_file(const fs::path& file) {
@@ -126,6 +153,12 @@ std::optional<Study> load(const Target& target, const ReproduceVerb& verb, const
   return load_study(target.study.string(), names, overrides);
 }
 
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw InputError(folder.string(), 0, "cannot be written: " + error.message());
+}
+
 void forget(const fs::path& database) {
   for (const char* suffix : {"", "-wal", "-shm"}) fs::remove(database.string() + suffix);
 }
@@ -133,21 +166,20 @@ void forget(const fs::path& database) {
 SweepSummary sweep_all(const Study& study, const Catalog& catalog, const ReproduceVerb& verb,
                        const fs::path& database) {
   Progress progress(study.name);
+  const auto ready = [&] {
+    make_folder(database.parent_path());
+    if (verb.fresh) forget(database);
+  };
   const SweepOptions options = {
       .database = database.string(),
       .jobs = verb.jobs,
+      .ready = ready,
       .progress = [&](std::int64_t done, std::int64_t total) { progress.show(done, total); }};
-  if (verb.fresh) forget(database);
   return sweep_study(study, catalog, options);
 }
 
 Outcome reproduce_one(const Study& study, const Target& target, const ReproduceVerb& verb,
                       const Catalog& catalog) {
-  std::error_code error;
-  fs::create_directories(target.results, error);
-  if (error) {
-    throw InputError(target.results.string(), 0, "cannot be written: " + error.message());
-  }
   Outcome outcome;
   const fs::path database = target.results / (study.name + ".db");
   const SweepSummary summary = sweep_all(study, catalog, verb, database);
@@ -158,9 +190,11 @@ Outcome reproduce_one(const Study& study, const Target& target, const ReproduceV
   outcome.failed = summary.failed > 0 || summary.interrupted;
   if (summary.interrupted) return outcome;
 
+  const unsigned processors = std::max(1u, std::thread::hardware_concurrency());
+  draw(study, database, target.results,
+       verb.jobs > 0 ? static_cast<std::size_t>(verb.jobs) : processors);
   for (const Figure& figure : study.figures) {
     const fs::path output = target.results / figure.output;
-    draw(figure, database, output);
     outcome.files.push_back(output);
     if (output.extension() == ".md" && outcome.table.empty()) outcome.table = read_file(output);
   }

@@ -44,7 +44,7 @@ void print_json(const FinishedRun& finished, std::uint64_t seed) {
   nlohmann::ordered_json out;
   out["seed"] = seed;
   out["status"] = finished.end.ok() ? "ok" : "failed";
-  out["reason"] = finished.end.ok() ? to_string(finished.end.reason) : finished.end.message;
+  out["reason"] = how_it_ended(finished.end);
   out["end_s"] = finished.end.at.seconds();
   out["events"] = finished.end.events;
   out["digest"] = finished.digest;
@@ -75,7 +75,7 @@ void store(const RunVerb& verb, const Scenario& scenario, std::uint64_t seed,
   row.parameters_json = parameters.dump();
   row.seed = seed;
   row.ok = finished.end.ok();
-  row.reason = row.ok ? to_string(finished.end.reason) : finished.end.message;
+  row.reason = how_it_ended(finished.end);
   row.digest = finished.digest;
   row.config_hash = scenario_hash(scenario);
   row.wall_s = finished.wall_s;
@@ -98,7 +98,7 @@ int run(const RunVerb& verb, const Catalog& catalog) {
   const FinishedRun finished = execute(prepared, catalog, seed);
   if (!verb.out.empty()) store(verb, scenario, seed, finished);
 
-  if (!finished.end.ok()) fmt::print(stderr, "hearsay: {}\n", finished.end.message);
+  if (!finished.end.ok()) fmt::print(stderr, "hearsay: {}\n", how_it_ended(finished.end));
   if (verb.json) {
     print_json(finished, seed);
   } else if (verb.digest) {

@@ -185,7 +185,7 @@ RunRow row_of(const Job& job, const Study& study, const Catalog& catalog,
   row.repetition = job.repetition;
   row.seed = study.seed + static_cast<std::uint64_t>(job.repetition - 1);
   row.ok = finished.end.ok();
-  row.reason = row.ok ? to_string(finished.end.reason) : finished.end.message;
+  row.reason = how_it_ended(finished.end);
   row.digest = finished.digest;
   row.config_hash = job.cell->config_hash(catalog);
   row.wall_s = finished.wall_s;
@@ -253,6 +253,7 @@ SweepSummary sweep_study(const Study& study, const Catalog& catalog, const Sweep
   }
   LogCache logs;
   for (const auto& cell : cell_scenarios) cell->get(catalog, logs);  // all errors before any run
+  if (options.ready) options.ready();
   DatabaseWriter database(options.database);
   database.add_study({study.name, std::filesystem::path(study.file).filename().string(),
                       config_of(study, cell_scenarios)});
@@ -282,7 +283,7 @@ SweepSummary sweep_study(const Study& study, const Catalog& catalog, const Sweep
       if (!outcome->finished.end.ok() && ++summary.failed == 1) {
         summary.first_failure = "run " + std::to_string(job->id) + " (" +
                                 cell_text(job->cell->cell()) +
-                                "): " + outcome->finished.end.message;
+                                "): " + how_it_ended(outcome->finished.end);
       }
       if (Clock::now() - last_commit < std::chrono::milliseconds(500)) continue;
       database.commit();

@@ -18,6 +18,8 @@ struct SweepOptions {
   std::string database;
   int jobs = 0;        ///< 0: one a processor
   bool retry = false;  ///< run those again that failed before
+  /// Called once when everything has been checked, before the database is opened.
+  std::function<void()> ready;
   /// Called now and then on the writing thread: runs stored so far, of how many to do.
   std::function<void(std::int64_t stored, std::int64_t total)> progress;
 };

@@ -167,6 +167,10 @@ TEST(PinnedDraws, OfPoisson) {
   for (const std::uint64_t value : {1019, 1028, 984, 1042, 960, 971}) {
     EXPECT_EQ(stream.poisson(1000.0), value);
   }
+  // So many that each branch of the rejection and each of its constants has its part.
+  std::uint64_t sum = 0;
+  for (std::uint64_t i = 0; i < 100'000; ++i) sum = sum * 31 + stream.poisson(20.0);
+  EXPECT_EQ(sum, 389301220041081623u);
 }
 
 TEST(Draws, FollowFromTheWordsByTheirFormulas) {

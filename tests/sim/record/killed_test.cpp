@@ -41,11 +41,15 @@ void write_killed(const std::string& file, int after, bool from_outside) {
   ASSERT_GE(child, 0);
   if (child == 0) {
     int steps = 0;
-    write_all(file, [&] {
-      const char byte = 0;
-      if (write(pipe_ends[1], &byte, 1) != 1) _exit(1);
-      if (++steps == after && !from_outside) raise(SIGKILL);
-    });
+    try {
+      write_all(file, [&] {
+        const char byte = 0;
+        if (write(pipe_ends[1], &byte, 1) != 1) _exit(1);
+        if (++steps == after && !from_outside) raise(SIGKILL);
+      });
+    } catch (const std::exception&) {
+      _exit(1);  // not into the test framework of a second process
+    }
     _exit(0);
   }
   close(pipe_ends[1]);
@@ -57,6 +61,7 @@ void write_killed(const std::string& file, int after, bool from_outside) {
   int status = 0;
   ASSERT_EQ(waitpid(child, &status, 0), child);
   close(pipe_ends[0]);
+  EXPECT_TRUE(WIFSIGNALED(status) || WEXITSTATUS(status) == 0);
 }
 
 class Killed : public testing::TestWithParam<std::tuple<int, bool>> {};

@@ -47,7 +47,7 @@ TEST(ChiSquaredBand, AConsistentBeliefLiesInsideAtAllInstants) {
   const ClaimResult result = bed.judge(everywhere(banded("anees", Kind::within)));
   EXPECT_EQ(result.verdict, Verdict::reproduced);
   EXPECT_EQ(result.comparisons, 6u);  // not those at 0 s, where there is no NEES yet
-  EXPECT_THAT(result.note, HasSubstr("2 instants before the first value left out"));
+  EXPECT_THAT(result.note, HasSubstr("instants left out before the first value: 2"));
   EXPECT_EQ(result.missing_values, 0u);
   EXPECT_EQ(result.repetitions, 100);
   EXPECT_EQ(result.bound_high, anees_band(2, 100, 0.05, 6).high);
@@ -107,7 +107,7 @@ TEST(Agreement, APredictionOfTheAneesIsConfirmedOrRefuted) {
   const ClaimResult result = bed.judge(expect);
   EXPECT_EQ(result.verdict, Verdict::reproduced);
   EXPECT_EQ(result.quantity, "relative difference of anees from ledger_anees");
-  EXPECT_THAT(result.note, HasSubstr("widest interval ±"));
+  EXPECT_THAT(result.note, HasSubstr("intervals are ±"));
   expect.than_metric = "too_low";
   const ClaimResult refuted = bed.judge(expect);
   EXPECT_EQ(refuted.verdict, Verdict::not_reproduced);
@@ -122,6 +122,20 @@ TEST(Agreement, RootMeanSquaresAreHeldAgainstTheirPrediction) {
   expect.than_metric = "claimed_sigma_m";
   EXPECT_EQ(bed.verdict(expect), Verdict::not_reproduced);
   EXPECT_NEAR(bed.judge(expect).worst.estimate, std::sqrt(5.0) - 1.0, 0.4);
+}
+
+TEST(Agreement, RepetitionsWithoutAPredictionAreLeftOutAndCounted) {
+  Bed bed(20, 1);
+  bed.fill([](const Asked& asked, Rows& rows) {
+    Stream stream = draws(asked.repetition, 0);
+    rows.series(1.0, 0, "nees", 2.0 * stream.exponential(1.0));
+    rows.series(1.0, 0, "ledger_anees", asked.repetition <= 4 ? -1.0 : 1.0);
+    return Outcome::finished;
+  });
+  Expectation expect = expects("anees", Kind::agrees_with);
+  expect.than_metric = "ledger_anees";
+  EXPECT_EQ(bed.verdict(expect), Verdict::reproduced);
+  EXPECT_EQ(bed.judge(expect).missing_values, 4u);
 }
 
 TEST(Agreement, OtherMetricsAreComparedByTheirDifference) {

@@ -31,8 +31,8 @@ TEST(WhatIsLeftOut, FailedAndAbsentRunsAreNotedAndPairsStillMatch) {
   EXPECT_EQ(result.verdict, Verdict::reproduced);
   EXPECT_EQ(result.repetitions, 8);
   EXPECT_NEAR(result.worst.estimate, -1.0, 1e-9);
-  EXPECT_THAT(result.note, HasSubstr("1 of 10 runs are missing (1 of them failed)"));
-  EXPECT_THAT(result.note, HasSubstr("1 repetitions left out: no finished run to pair them with"));
+  EXPECT_THAT(result.note, HasSubstr("missing runs: 1 of 10 (failed: 1)"));
+  EXPECT_THAT(result.note, HasSubstr("repetitions without a finished run to pair them with: 1"));
 }
 
 TEST(WhatIsLeftOut, ACellWithoutRunsKeepsAClaimFromBeingReproduced) {
@@ -46,7 +46,7 @@ TEST(WhatIsLeftOut, ACellWithoutRunsKeepsAClaimFromBeingReproduced) {
   EXPECT_EQ(result.verdict, Verdict::undecided);
   EXPECT_EQ(result.open, 1u);
   EXPECT_EQ(result.worst_where, "rule=ci");
-  EXPECT_THAT(result.note, HasSubstr("no finished run in 1 cells, the first rule=ci"));
+  EXPECT_THAT(result.note, HasSubstr("cells without a finished run: 1, the first rule=ci"));
 }
 
 TEST(WhatIsLeftOut, MissingValuesAreCounted) {
@@ -70,7 +70,7 @@ TEST(WhatIsLeftOut, WithoutAnyValueNothingIsDecided) {
   const ClaimResult result = bed.judge(at_most("entropy_nats", 0.0));
   EXPECT_EQ(result.verdict, Verdict::undecided);
   EXPECT_TRUE(std::isnan(result.worst.estimate));
-  EXPECT_THAT(result.note, HasSubstr("fewer than two values"));
+  EXPECT_THAT(result.note, HasSubstr("comparisons with fewer than two values: 1"));
   const ClaimResult unknown = bed.judge(at_most("never_recorded", 0.0));
   EXPECT_EQ(unknown.verdict, Verdict::undecided);
   EXPECT_THAT(unknown.note, HasSubstr("the database has no values of never_recorded"));
@@ -124,7 +124,8 @@ TEST(WhatIsLeftOut, RunsOfCellsThatTheStudyNoLongerHasAreNoted) {
     return Outcome::finished;
   });
   bed.study.axes[0].points.pop_back();
-  EXPECT_THAT(bed.judge(at_most("cost", 3.0)).note, HasSubstr("2 runs of other cells"));
+  EXPECT_THAT(bed.judge(at_most("cost", 3.0)).note,
+              HasSubstr("runs of cells that the study does not have: 2"));
 }
 
 TEST(WhatIsLeftOut, ADatabaseWithoutTheStudyIsRefused) {

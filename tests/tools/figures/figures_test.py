@@ -1,127 +1,19 @@
-"""Tests of tools/figures: the statistics against published values, the numbers against ones worked
-out by hand, and what a user sees after a mistake."""
+"""Tests of tools/figures: the statistics against published values, the curves and tables against
+numbers worked out by hand, the figures for what they say."""
 
-import contextlib
 import csv
-import importlib
-import io
 import math
 import os
-import sqlite3
-import subprocess
-import sys
-import tempfile
 import unittest
 
-SCRIPTS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../../tools/figures")
-sys.path.insert(0, SCRIPTS)
+import numpy as np
 
-import numpy as np  # noqa: E402
+from small_study import T_S, WithDatabase, make_database  # first: it makes the scripts known
 
-import data  # noqa: E402
-import panels  # noqa: E402
-import stats  # noqa: E402
-import style  # noqa: E402
-
-RULES = ("none", "naive", "my-rule")
-T_S = (0.0, 10.0, 20.0)
-
-
-def make_database(file, losses=("0.0", "0.3"), subjects=("target",), series=None, change=None):
-    """A study of the documented names: 2 topologies × 3 rules × losses × 4 repetitions, 2 agents and
-    the central filter. `change(values)` may alter or drop (None → NULL) single values."""
-    connection = sqlite3.connect(file)
-    connection.executescript(
-        f"""PRAGMA application_id = {data.APPLICATION_ID};
-        PRAGMA user_version = {data.SCHEMA_VERSION};
-        CREATE TABLE run(id INTEGER PRIMARY KEY, study, repetition, status);
-        CREATE TABLE axis(run, name, value);
-        CREATE TABLE scalar(run, agent, name, value);
-        CREATE TABLE series(run, t_s, agent, subject, name, value);"""
-    )
-    run = 0
-    for topology in ("line", "ring"):
-        for rule in RULES:
-            for loss in losses:
-                for repetition in range(1, 5):
-                    run += 1
-                    connection.execute("INSERT INTO run VALUES (?, 'small', ?, 'ok')", (run, repetition))
-                    for name, label in (("topology", topology), ("rule", rule), ("loss", loss)):
-                        connection.execute("INSERT INTO axis VALUES (?, ?, ?)", (run, name, label))
-                    scalars = [(run, -1, "state_dimension", 2.0)]
-                    scalars += [(run, a, "distance_error_m", 0.1 * (a + 2)) for a in (-1, 0, 1)]
-                    connection.executemany("INSERT INTO scalar VALUES (?, ?, ?, ?)", scalars)
-                    connection.executemany(
-                        "INSERT INTO series VALUES (?, ?, ?, ?, ?, ?)",
-                        rows_of(run, rule, repetition, subjects, series, change),
-                    )
-    connection.commit()
-    return connection
-
-
-def rows_of(run, rule, repetition, subjects, series, change):
-    for t in T_S:
-        for agent in (-1, 0, 1):
-            for subject in subjects:
-                values = {
-                    "rms_error_m": (repetition + agent) / (1.0 + t),
-                    "claimed_sigma_m": 10.0 ** -t if rule == "naive" else 2.0 / (1.0 + t),
-                    "true_sigma_m": 2.5 / (1.0 + t),
-                    "nees": 2.0 + 0.5 * agent,
-                    "multiplicity_mean": 2.0**t if rule == "naive" else 1.0,
-                }
-                for name, value in values.items():
-                    if series is None or name in series:
-                        if change is not None:
-                            value = change(rule, repetition, t, agent, name, value)
-                        yield run, t, agent, subject, name, value
-
-
-class WithDatabase(unittest.TestCase):
-    def setUp(self):
-        self._directory = tempfile.TemporaryDirectory()
-        self.directory = self._directory.name
-        self.file = self.path("small.db")
-        self._before = os.getcwd()
-        os.chdir(self.directory)
-
-    def tearDown(self):
-        os.chdir(self._before)
-        self._directory.cleanup()
-
-    def path(self, name):
-        return os.path.join(self.directory, name)
-
-    def make(self, **options):
-        make_database(self.file, **options).close()
-
-    def run_script(self, script, *arguments):
-        """Exit code, stdout, stderr of a script. In this process: starting one takes a second."""
-        out, err = io.StringIO(), io.StringIO()
-        code, argv = 0, sys.argv
-        module = importlib.import_module(script.removesuffix(".py"))
-        try:
-            sys.argv = [script, *arguments]
-            with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-                data.main(module.main)
-        except SystemExit as end:
-            code = end.code
-        finally:
-            sys.argv = argv
-        return code, out.getvalue(), err.getvalue()
-
-    def draw(self, script, output, *arguments):
-        self.assertEqual(self.run_script(script, self.file, output, *arguments), (0, "", ""))
-        with open(self.path(output), "rb") as stream:
-            return stream.read()
-
-    def refused(self, script, *arguments):
-        """What a script says on stderr when it refuses, without its name."""
-        before = sorted(os.listdir(self.directory))
-        code, out, err = self.run_script(script, *arguments)
-        self.assertEqual((code, out), (2, ""), err)
-        self.assertEqual(sorted(os.listdir(self.directory)), before, "something half-written")
-        return err.strip().removeprefix(script + ": ")
+import data
+import panels
+import stats
+import style
 
 
 class Statistics(unittest.TestCase):
@@ -198,11 +90,27 @@ class Curves(WithDatabase):
     def test_anees_is_a_mean_an_agent_and_spans_them(self):
         self.make()
         chosen = self.chosen(loss="0")
-        nees = chosen.series(["nees"])["nees"]
-        curve = panels.anees(nees, 0, chosen.state_dimension())
+        series = chosen.series(["nees", "claimed_sigma_m"])
+        curve = panels.anees(
+            series["nees"], series["claimed_sigma_m"], 0, chosen.state_dimension()
+        )
         self.assertAlmostEqual(curve.value[0], 1.125)
         self.assertAlmostEqual(curve.low[0], 1.0)
         self.assertAlmostEqual(curve.high[0], 1.25)
+
+    def test_the_nees_of_a_belief_without_claim_is_left_out_of_anees(self):
+        def change(rule, repetition, t, agent, name, value):
+            if agent == 1 and repetition < 3 and t == 10.0:
+                return {"nees": -1e9, "claimed_sigma_m": None}.get(name, value)
+            return value
+
+        self.make(change=change)
+        chosen = self.chosen(loss="0")
+        series = chosen.series(["nees", "claimed_sigma_m"])
+        curve = panels.anees(series["nees"], series["claimed_sigma_m"], 0, 2)
+        np.testing.assert_allclose(curve.value, 1.125)
+        np.testing.assert_allclose(curve.high, 1.25)
+        self.assertEqual(list(curve.thinned), [False, True, False])
 
     def test_undefined_beliefs_are_left_out_and_marked_and_more_than_half_break_the_curve(self):
         def change(rule, repetition, t, agent, name, value):
@@ -241,7 +149,7 @@ class Table(WithDatabase):
     def test_each_cell_has_a_line_and_the_central_filter_one_where_it_is_the_same(self):
         self.make()
         rows = self.rows()
-        self.assertEqual(len(rows), 2 * 3 * 2 + 2)  # naive's multiplicity is another for central, too
+        self.assertEqual(len(rows), 2 * 3 * 2 + 2)  # here the central filter depends on the rule
         first = rows[0]
         self.assertEqual([first[a] for a in ("topology", "rule", "loss")], ["line", "none", "0"])
         self.assertAlmostEqual(float(first["rms_error_m"]), math.sqrt(84 / 8) / 21.0, places=8)
@@ -260,8 +168,15 @@ class Table(WithDatabase):
         self.assertEqual(lines[0], "**small** at the end of the runs, 4 repetitions, loss 0.3")
         self.assertIn("| topology | rule    |", lines[2])
         self.assertNotIn("loss", lines[2])
-        self.assertTrue(lines[4].startswith("| line     | none    | 0.250 "), lines[4])
+        self.assertTrue(lines[4].startswith("| line     | none    | 0.154 (0."), lines[4])
         self.assertTrue(os.path.exists(self.path("t.csv")))
+
+    def test_without_anees_the_distance_stands_for_the_error(self):
+        self.make(series=("rms_error_m", "claimed_sigma_m"))
+        text = self.draw("table.py", "t.md", "--loss", "0.3").decode()
+        self.assertIn("distance to truth [m]", text)
+        self.assertNotIn("true error", text)
+        self.assertIn("| line     | none    | 0.250 ", text)
 
     def test_undefined_beliefs_are_told(self):
         def change(rule, repetition, t, agent, name, value):
@@ -283,7 +198,8 @@ class Figures(WithDatabase):
         self.assertEqual([f for f in os.listdir(self.directory) if "partial" in f], [])
 
     def test_the_figure_of_the_logs_takes_all_rates_of_loss(self):
-        self.make(subjects=("6", "7"), series=("rms_error_m", "claimed_sigma_m", "multiplicity_mean"))
+        recorded = ("rms_error_m", "claimed_sigma_m", "multiplicity_mean")
+        self.make(subjects=("6", "7"), series=recorded)
         text = self.draw("mrclam.py", "a.svg").decode()
         for said in ("2 robots, 2 landmarks", "30 % loss", "correlated in time", "my-rule"):
             self.assertIn(said, text)
@@ -297,120 +213,13 @@ class Figures(WithDatabase):
 
         self.make(change=change)
         text = self.draw("rumour.py", "a.svg", "--loss", "0.3").decode()
-        for said in ("100 % of beliefs", "indefinite at the end", "2 agents", "4 paired repetitions"):
+        for said in ("100 % of beliefs", "indefinite at the end", "4 paired repetitions"):
             self.assertIn(said, text)
 
     def test_the_caption_says_what_was_chosen(self):
         self.make()
         text = self.draw("rumour.py", "a.svg", "--loss", "0.3").decode()
         self.assertIn("30 % loss", text)
-
-
-class Mistakes(WithDatabase):
-    def test_a_missing_database_is_named(self):
-        self.assertEqual(self.refused("rumour.py", "no.db", "x.png"), "no.db: no such database")
-
-    def test_the_shell_sees_exit_code_2_and_one_line(self):
-        done = subprocess.run(
-            [sys.executable, "-B", os.path.join(SCRIPTS, "rumour.py"), "no.db", "x.png"],
-            capture_output=True, text=True, check=False,
-        )
-        self.assertEqual(
-            (done.returncode, done.stdout, done.stderr),
-            (2, "", "rumour.py: no.db: no such database\n"),
-        )
-
-    def test_a_file_that_is_no_database_is_named(self):
-        with open(self.path("text.db"), "w", encoding="utf-8") as stream:
-            stream.write("not a database, but long enough to be looked at\n" * 100)
-        self.assertEqual(
-            self.refused("table.py", "text.db", "x.md"),
-            "text.db: not a database that can be read (file is not a database)",
-        )
-
-    def test_a_database_of_something_else_or_another_version_is_refused(self):
-        connection = make_database(self.file)
-        connection.execute("PRAGMA user_version = 7")
-        connection.commit()
-        self.assertEqual(
-            self.refused("mrclam.py", "small.db", "x.png"),
-            "small.db: its schema has version 7, these scripts read 1",
-        )
-        connection.execute("PRAGMA application_id = 0")
-        connection.commit()
-        self.assertEqual(
-            self.refused("rumour.py", "small.db", "x.png"),
-            "small.db: a database, but not one of hearsay",
-        )
-
-    def test_an_empty_selection_says_what_there_is(self):
-        self.make()
-        self.assertEqual(
-            self.refused("rumour.py", "small.db", "x.png", "--loss", "0.7"),
-            "small.db: axis loss has no '0.7'; it has: 0, 0.3",
-        )
-        self.assertEqual(
-            self.refused("rumour.py", "small.db", "x.png", "--los", "0.3"),
-            "small.db: study 'small' has no axis 'los'; it has: topology, rule, loss",
-        )
-        self.assertEqual(
-            self.refused("table.py", "small.db", "x.md", "--study", "big"),
-            "small.db: no study 'big'; there are: small",
-        )
-
-    def test_a_database_without_runs_or_with_failed_ones_alone_is_refused(self):
-        connection = make_database(self.file)
-        connection.execute("UPDATE run SET status = 'failed'")
-        connection.commit()
-        self.assertEqual(
-            self.refused("mrclam.py", "small.db", "x.png"),
-            "small.db: study 'small' has no finished run with these labels",
-        )
-        connection.execute("DELETE FROM run")
-        connection.commit()
-        self.assertEqual(self.refused("mrclam.py", "small.db", "x.png"), "small.db: it holds no runs")
-
-    def test_an_axis_that_the_figure_does_not_draw_must_be_chosen(self):
-        connection = make_database(self.file)
-        connection.execute("INSERT INTO axis SELECT id, 'speed', id % 2 FROM run")
-        connection.commit()
-        self.assertEqual(
-            self.refused("mrclam.py", "small.db", "x.png"),
-            "small.db: choose one speed with --speed: 1, 0",
-        )
-
-    def test_a_series_that_was_not_recorded_is_named(self):
-        self.make(series=("rms_error_m", "claimed_sigma_m"))
-        self.assertEqual(
-            self.refused("mrclam.py", "small.db", "x.png"),
-            "small.db: no series 'multiplicity_mean' in these runs of 'small';"
-            " name it under [record] in the scenario",
-        )
-
-    def test_nothing_but_undefined_values_is_refused(self):
-        self.make(change=lambda *rest: None)
-        self.assertEqual(
-            self.refused("rumour.py", "small.db", "x.png", "--loss", "0"),
-            "no error is defined in these runs; nothing to draw",
-        )
-
-    def test_outputs_that_cannot_be_written_are_named(self):
-        self.make()
-        self.assertEqual(
-            self.refused("rumour.py", "small.db", "nowhere/x.png", "--loss", "0"),
-            "nowhere/x.png: cannot be written (No such file or directory)",
-        )
-        self.assertEqual(
-            self.refused("rumour.py", "small.db", "x.jpg", "--loss", "0"),
-            "x.jpg: a figure ends with .png, .svg or .pdf",
-        )
-        self.assertEqual(
-            self.refused("table.py", "small.db", "x.txt"), "x.txt: a table ends with .md or .csv"
-        )
-
-    def test_arguments_that_are_none_are_refused(self):
-        self.make()
-        self.assertIn("expected --AXIS LABEL", self.refused("table.py", "small.db", "x.md", "odd"))
 
 
 if __name__ == "__main__":

@@ -55,7 +55,7 @@ class BadScenario(Bed):
         self.bad("key=value", "run", "ring.toml", "--set", "radio.rate_bps")
 
     def test_set_of_an_unknown_key_names_set_in_place_of_a_line(self):
-        self.bad("--set radio.rate_bbs=1: unknown key 'rate_bbs' in [radio]; did you mean 'rate_bps'?", "run",
+        self.bad("--set radio.rate_bbs=1: unknown key 'radio.rate_bbs'; did you mean 'radio.rate_bps'?", "run",
                  "ring.toml", "--set", "radio.rate_bbs=1")
 
     def test_set_out_of_range(self):
@@ -74,7 +74,7 @@ class BadStudy(Bed):
     def test_an_axis_whose_key_does_not_exist(self):
         file = self.study_with("radio.loss.probability", "radio.loss.probabilty")
         self.bad("bad.study.toml:6: ", "sweep", file)
-        self.bad("did you mean 'probability'?", "sweep", file)
+        self.bad("did you mean 'radio.loss.probability'?", "sweep", file)
 
     def test_a_claim_on_an_unknown_metric(self):
         file = self.study_with('"ledger_anees"', '"ledger_anes"')

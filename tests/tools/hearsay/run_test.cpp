@@ -13,6 +13,8 @@
 namespace hearsay {
 namespace {
 
+using OneRun = Run;  // in a test, Run is GoogleTest's
+
 const std::string kRumour = HEARSAY_SOURCE_DIR "/scenarios/rumour/rumour.toml";
 
 std::shared_ptr<const PreparedScenario> rumour(const std::vector<std::string>& settings) {
@@ -26,7 +28,7 @@ std::shared_ptr<const PreparedScenario> rumour(const std::vector<std::string>& s
 std::string digest_of(const std::shared_ptr<const PreparedScenario>& prepared, std::uint64_t seed) {
   const Catalog catalog;
   Xxh3Digest digest, ledger;
-  Run run(prepared, catalog, {.seed = seed, .digest = &digest, .ledger_digest = &ledger});
+  OneRun run(prepared, catalog, {.seed = seed, .digest = &digest, .ledger_digest = &ledger});
   EXPECT_EQ(run.run().reason, EndReason::time_reached);
   return digest_text(digest, &ledger);
 }
@@ -36,7 +38,7 @@ using Series = std::map<std::pair<AgentId, double>, double>;
 Series series_of(const std::shared_ptr<const PreparedScenario>& prepared, std::uint64_t seed,
                  std::string_view metric) {
   const Catalog catalog;
-  Run run(prepared, catalog, {.seed = seed});
+  OneRun run(prepared, catalog, {.seed = seed});
   EXPECT_TRUE(run.run().ok());
   Series found;
   for (const SeriesRow& row : run.record().series()) {
@@ -66,13 +68,13 @@ TEST(Run, AHundredOfThemLiveInOneProcessSideBySide) {
   const Catalog catalog;
   const std::string wanted = digest_of(scenario, 5);
   std::vector<std::unique_ptr<Xxh3Digest>> digests, ledgers;
-  std::vector<std::unique_ptr<Run>> runs;
+  std::vector<std::unique_ptr<OneRun>> runs;
   for (int i = 0; i < 100; ++i) {
     digests.push_back(std::make_unique<Xxh3Digest>());
     ledgers.push_back(std::make_unique<Xxh3Digest>());
-    runs.push_back(std::make_unique<Run>(
+    runs.push_back(std::make_unique<OneRun>(
         scenario, catalog,
-        Run::Options{
+        OneRun::Options{
             .seed = 5, .digest = digests.back().get(), .ledger_digest = ledgers.back().get()}));
   }
   for (int i = 99; i >= 0; --i) {
@@ -91,7 +93,7 @@ TEST(Run, TheSamePacketsAreLostUnderEveryRule) {
         rumour({"radio.topology=full", "radio.loss.probability=0.4", "record.messages=all",
                 std::string("agents.estimator.fusion=") + rule});
     const Catalog catalog;
-    Run run(scenario, catalog, {.seed = 3});
+    OneRun run(scenario, catalog, {.seed = 3});
     ASSERT_TRUE(run.run().ok());
     std::map<Key, std::string> fates;
     for (const MessageRow& row : run.record().messages()) {
@@ -110,7 +112,8 @@ TEST(Run, TheMeasurementsAreTheSameUnderEveryRuleAndLoss) {
         rumour({std::string("agents.estimator.fusion=") + rule, "radio.loss.probability=0.9"}), 9,
         "rms_error_m");
     for (const auto& [key, value] : other) {
-      if (key.first == central_agent) EXPECT_EQ(value, none.at(key)) << key.second;
+      if (key.first != central_agent) continue;
+      EXPECT_EQ(value, none.at(key)) << key.second;
     }
   }
 }
@@ -151,7 +154,7 @@ TEST(Run, TheLedgersTrueCovarianceAgreesWithMonteCarlo) {
     std::map<AgentId, double> square, variance;
     constexpr int repetitions = 200;
     for (std::uint64_t seed = 1; seed <= repetitions; ++seed) {
-      Run run(scenario, catalog, {.seed = seed});
+      OneRun run(scenario, catalog, {.seed = seed});
       ASSERT_TRUE(run.run().ok());
       const Record& record = run.record();
       for (const SeriesRow& row : record.series()) {
@@ -174,8 +177,8 @@ TEST(Run, SwitchingTheLedgerOffChangesNothingElse) {
   std::size_t i = 0;
   for (const char* ledger : {"on", "off"}) {
     Xxh3Digest digest;
-    Run run(rumour({std::string("record.ledger=") + ledger}), catalog,
-            {.seed = 2, .digest = &digest});
+    OneRun run(rumour({std::string("record.ledger=") + ledger}), catalog,
+               {.seed = 2, .digest = &digest});
     ASSERT_TRUE(run.run().ok());
     hex[i++] = digest.hex();
   }
@@ -201,7 +204,7 @@ TEST(Run, AFailureNamesTheAgentAndTheSimulatedTime) {
   scenario.duration_s = 10;
   scenario.agents = {AgentSpec{.name = "vase", .kind = "fragile", .count = 3}};
   LogCache logs;
-  Run run(prepare(scenario, catalog, logs), catalog, {});
+  OneRun run(prepare(scenario, catalog, logs), catalog, {});
   const RunEnd end = run.run();
   EXPECT_EQ(end.reason, EndReason::agent_failed);
   EXPECT_EQ(end.agent, 1);

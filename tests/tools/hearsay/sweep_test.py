@@ -40,9 +40,9 @@ class Sweep(Bed):
 
     def test_a_second_call_does_nothing(self):
         self.good("sweep", "ring.study.toml", "--out", "a.db")
-        before = (self.dir / "a.db").read_bytes()
+        before = content(self.dir / "a.db")
         self.assertIn(" 0 new ", self.good("sweep", "ring.study.toml", "--out", "a.db"))
-        self.assertEqual(before, (self.dir / "a.db").read_bytes())
+        self.assertEqual(before, content(self.dir / "a.db"))
 
     def test_killed_at_any_moment_it_goes_on_and_ends_the_same(self):
         self.write("ring.study.toml", STUDY.replace("repetitions = 6", "repetitions = 400"))
@@ -79,7 +79,7 @@ class Sweep(Bed):
         self.assertGreater(len(content(self.dir / "a.db")["run"]), 0)
 
     def test_a_failed_run_is_stored_with_its_reason_and_retried_only_on_request(self):
-        text = (self.dir / "ring.toml").read_text().replace("seed = 1", "seed = 1\nevents_max = 200")
+        text = (self.dir / "ring.toml").read_text().replace("seed = 1", "seed = 1\nevents_max = 150")
         self.write("ring.toml", text)
         done = self.command("sweep", "ring.study.toml", "--out", "a.db")
         self.assertEqual(done.returncode, 1)

@@ -87,7 +87,7 @@ class Verbs(Bed):
 
     def test_compare_pairs_repetitions(self):
         self.good("sweep", "ring.study.toml", "--out", "a.db")
-        rows = json.loads(self.good("compare", "a.db", "--metric", "ledger_anees", "--by", "rule",
+        rows = json.loads(self.good("compare", "a.db", "--metric", "fusions", "--by", "rule",
                                     "--baseline", "none", "--json"))
         naive = [row for row in rows if row["rule"] == "naive"]
         self.assertEqual(len(naive), 2)

@@ -89,21 +89,15 @@ Matrix equilibrated(const Matrix& omega, const Vector& factor) {
   return out;
 }
 
-void judge(Scaled& scaled, bool common_factor) {
+void judge(Scaled& scaled) {
   const Vector values = eigenvalues(scaled.matrix);
   const Eigen::Index n = values.size();
   const double largest = std::max(std::fabs(values(0)), std::fabs(values(n - 1)));
   const double threshold = static_cast<double>(n) * singular_below * largest;
   for (Eigen::Index i = 0; i < n; ++i) scaled.rank += std::fabs(values(i)) > threshold ? 1 : 0;
-  if (values(0) < -threshold) {
-    scaled.definiteness = Definiteness::indefinite;
-  } else if (scaled.rank == n && !common_factor) {
-    scaled.definiteness = Definiteness::positive;
-  } else {
-    // What needed a common factor has a negative minor: not positive, if only by rounding.
-    scaled.definiteness = Definiteness::singular;
-    scaled.rank = std::min(scaled.rank, static_cast<int>(n) - (common_factor ? 1 : 0));
-  }
+  scaled.definiteness = values(0) < -threshold ? Definiteness::indefinite
+                        : scaled.rank == n     ? Definiteness::positive
+                                               : Definiteness::singular;
 }
 
 }  // namespace
@@ -127,7 +121,7 @@ Scaled scale(const Matrix& omega) {
     scaled.factor.setConstant(std::ldexp(1.0, -(exponent_of(omega) / 2)));
     scaled.matrix = equilibrated(omega, scaled.factor);
   }
-  judge(scaled, !fair);
+  judge(scaled);
   return scaled;
 }
 

@@ -19,7 +19,7 @@ struct Finding {
   double bound_low = 0.0, bound_high = 0.0;
   double margin = 0.0;       ///< how far inside the claim; negative beyond the bound
   double half_width = 0.0;   ///< agrees_with: of the interval, relative to the prediction
-  std::size_t left_out = 0;  ///< agrees_with: values whose prediction is not positive
+  std::size_t left_out = 0;  ///< agrees_with: values that cannot be divided by their prediction
 };
 
 /// `family`: number of comparisons in the claim.

@@ -81,6 +81,7 @@ void add_compare(CLI::App& app, Action& action) {
   verb->add_option("--by", options->by, "Axis to compare along")->required();
   verb->add_option("--baseline", options->baseline, "Label to compare with (default: the first)");
   verb->add_option("--agents", options->agents, "mean, each, max, central, or an agent (mean)");
+  verb->add_option("--study", options->study, "Study, where the file holds several");
   verb->add_option("--at", options->at, "end, or an instant in seconds (end)");
   verb->add_flag("--json", options->json, "Print as JSON");
   verb->callback([&action, options] { action = [options] { return program::compare(*options); }; });

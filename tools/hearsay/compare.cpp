@@ -27,7 +27,8 @@ int compare(const CompareVerb& verb) {
                                         .by = verb.by,
                                         .baseline = verb.baseline,
                                         .agents = verb.agents,
-                                        .at = verb.at});
+                                        .at = verb.at,
+                                        .study = verb.study});
   if (verb.json) {
     nlohmann::ordered_json out = nlohmann::ordered_json::array();
     for (const analysis::CompareRow& row : rows) {

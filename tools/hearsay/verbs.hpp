@@ -41,6 +41,7 @@ struct CompareVerb {
   std::optional<std::string> baseline;
   std::string agents = "mean";
   std::string at = "end";
+  std::optional<std::string> study;  ///< needed where a database holds several
   bool json = false;
 };
 int compare(const CompareVerb& verb);

@@ -169,6 +169,11 @@ TEST(CovarianceIntersection, WhatOnlyOneSideKnowsIsKept) {
     expect_omega(intersect_det(diagonal({d, 0}), diagonal({1, 1})), omega);
     expect_omega(intersect_det(diagonal({1, 1}), diagonal({d, 0})), 1 - omega);
   }
+  // So it is along a slanted direction, where A's rounding must not pass for information.
+  const double slanted = 0.5 * (1 - 1 / (1e12 - 1));
+  const Matrix direction = matrix({{0.36, 0.48}, {0.48, 0.64}});
+  expect_omega(intersect_det(1e12 * direction, Matrix::Identity(2, 2)), slanted, 1e-10);
+  expect_omega(intersect_det(Matrix::Identity(2, 2), 1e12 * direction), 1 - slanted, 1e-10);
   // Known worse than by the other side: nothing to gain.
   for (const Criterion intersect : both) {
     expect_omega(intersect(diagonal({0.5, 0}), diagonal({1, 1})), 0, 0);

@@ -1,0 +1,73 @@
+// A fleet that talks allocates nothing a packet once it is warm. (Operator new is counted in the
+// whole of this executable.)
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <new>
+
+#include "agents/estimator_agent.hpp"
+
+namespace {
+std::size_t allocations = 0;
+}
+
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* memory = std::malloc(size ? size : 1)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+
+namespace hearsay {
+namespace {
+
+/// Allocations between 60 s and 119 s of a fleet of five on a full graph that talks every second.
+std::size_t allocations_of(gaussian::Rule rule, bool ledger, bool measures) {
+  Simulation simulation({.seed = 1, .end = Time::at(120_s), .record = {}});
+  Witness witness(simulation, {.subjects = {{.name = "target", .truth = {0.0, 0.0}}},
+                               .series = {},
+                               .series_period = 1000_s,
+                               .ledger = ledger});
+  Radio radio(simulation, Topology::full(5), {.latency = 10_ms, .loss_probability = 0.2});
+  std::vector<std::unique_ptr<Context>> contexts;
+  std::vector<std::unique_ptr<EstimatorAgent>> agents;
+  for (AgentId id = 0; id < 5; ++id) {
+    contexts.push_back(std::make_unique<Context>(
+        simulation, radio,
+        Context::Identity{.id = id, .name = "agent", .kind = "estimator", .parameters = {}}));
+    EstimatorAgent::Options options;
+    options.rule = rule;
+    options.sensors = {PositionSensor(
+        {.sensor_m = {10.0 + id, 5.0}, .sigma_along_m = 3.0 + id, .sigma_across_m = 1.0})};
+    if (!measures) options.sensor_end = Time::at(50_s);
+    options.talk = PeriodicTalk{.period = 1_s, .phase = 100_ms * id};
+    agents.push_back(std::make_unique<EstimatorAgent>(*contexts.back(), witness, options));
+    radio.attach(id, *agents.back());
+  }
+  witness.start();
+  for (const auto& agent : agents) agent->start();
+  std::size_t before = 0, after = 0;
+  simulation.schedule(Time::at(60_s), Phase::observe, [&] { before = allocations; });
+  simulation.schedule(Time::at(119_s), Phase::observe, [&] { after = allocations; });
+  EXPECT_TRUE(simulation.run().ok());
+  EXPECT_GT(agents[0]->estimator().counts().fusions, 300u);
+  return after - before;
+}
+
+TEST(Allocation, WithoutLedgerAFleetAllocatesNothingOnceItIsWarm) {
+  using gaussian::Rule;
+  for (const Rule rule : {Rule::naive, Rule::channel, Rule::channel_robust, Rule::ci_det}) {
+    EXPECT_EQ(allocations_of(rule, false, true), 0u) << gaussian::info(rule).name;
+  }
+}
+
+TEST(Allocation, WithLedgerAFleetAllocatesNothingWhileNoMeasurementIsNew) {
+  using gaussian::Rule;
+  for (const Rule rule : {Rule::naive, Rule::channel, Rule::channel_robust, Rule::ci_det}) {
+    EXPECT_EQ(allocations_of(rule, true, false), 0u) << gaussian::info(rule).name;
+  }
+}
+
+}  // namespace
+}  // namespace hearsay

@@ -44,8 +44,8 @@ def main():
     compiler = subprocess.run(["g++", "--version"], capture_output=True, text=True).stdout.split("\n")[0]
     print("# Benchmarks\n")
     print(f"{processor()}, {compiler}, release build. Median of five interleaved repetitions, in millions "
-          "a second (events, wake-ups, deliveries, rows) of CPU time (log: of wall time); the ratio is ours to a floor made of "
-          "plain arrays in the same binary and run. Written by `tools/bench/run`.\n")
+          "a second (events, wake-ups, deliveries, rows) of CPU time (log: of wall time); the ratio "
+          "is ours to a floor made of plain arrays in the same binary and run. Written by `tools/bench/run`.\n")
     print("| workload | floor | ours | ratio |")
     print("|---|---|---|---|")
     for workload, sides in sorted(rates.items(), key=lambda item: order(item[0])):

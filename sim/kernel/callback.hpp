@@ -10,11 +10,11 @@
 
 namespace hearsay {
 
-/// What happens at an event: any callable void() of at most 48 bytes that can be moved without
+/// What happens at an event: any callable void() of at most 40 bytes that can be moved without
 /// throwing. Move-only; callable any number of times; an empty one must not be called.
 class Callback {
  public:
-  static constexpr std::size_t bytes_max = 48;
+  static constexpr std::size_t bytes_max = 40;
 
   Callback() = default;
 
@@ -22,13 +22,15 @@ class Callback {
   requires(!std::is_same_v<std::remove_cvref_t<F>, Callback> &&
            std::is_invocable_v<std::remove_cvref_t<F>&>)
       Callback(F&& function) {  // NOLINT: implicit, so that schedule(…, [] { … }) reads well
-    using Kept = std::remove_cvref_t<F>;
-    static_assert(sizeof(Kept) <= bytes_max, "a callback captures more than 48 bytes");
-    static_assert(alignof(Kept) <= alignof(std::max_align_t), "a callback is aligned too widely");
-    static_assert(std::is_nothrow_move_constructible_v<Kept>, "moving a callback may throw");
-    static_assert(std::is_nothrow_destructible_v<Kept>, "destroying a callback may throw");
-    ::new (static_cast<void*>(bytes_)) Kept(std::forward<F>(function));
-    kind_ = &kind_of<Kept>;
+    keep(std::forward<F>(function));
+  }
+  /// Drops what is held and takes `function`, built in place.
+  template <class F>
+  requires(!std::is_same_v<std::remove_cvref_t<F>, Callback> &&
+           std::is_invocable_v<std::remove_cvref_t<F>&>) void
+  operator=(F&& function) {
+    clear();
+    keep(std::forward<F>(function));
   }
 
   Callback(Callback&& other) noexcept { take(other); }
@@ -43,6 +45,16 @@ class Callback {
 
   explicit operator bool() const { return kind_ != nullptr; }
   void operator()() { kind_->call(bytes_); }
+
+  /// Asks the cache for what is behind the first captured pointer, which mostly is whom the
+  /// callback acts on. If something else was captured first, nothing happens.
+  void prefetch() const {
+    const std::byte* first = nullptr;
+    std::memcpy(&first, bytes_, sizeof first);
+    __builtin_prefetch(first);
+    __builtin_prefetch(first + 64);
+    __builtin_prefetch(first + 128);
+  }
 
  private:
   struct Kind {
@@ -67,6 +79,16 @@ class Callback {
           ? nullptr
           : +[](std::byte* at) noexcept { std::destroy_at(object<F>(at)); }};
 
+  template <class F>
+  void keep(F&& function) {
+    using Kept = std::remove_cvref_t<F>;
+    static_assert(sizeof(Kept) <= bytes_max, "a callback captures more than 40 bytes");
+    static_assert(alignof(Kept) <= alignof(std::max_align_t), "a callback is aligned too widely");
+    static_assert(std::is_nothrow_move_constructible_v<Kept>, "moving a callback may throw");
+    static_assert(std::is_nothrow_destructible_v<Kept>, "destroying a callback may throw");
+    ::new (static_cast<void*>(bytes_)) Kept(std::forward<F>(function));
+    kind_ = &kind_of<Kept>;
+  }
   void take(Callback& other) noexcept {
     kind_ = std::exchange(other.kind_, nullptr);
     if (kind_ == nullptr) return;

@@ -3,11 +3,17 @@
 // Sequence is the order of insertion, so events of one instant and phase happen in the order in
 // which they were scheduled. The phase ranks what happens at one instant: first the world moves,
 // then sensors look, then packets and updates arrive, then agents act and talk, and last somebody
-// takes samples. Phase and sequence share one 64-bit number, so an order is two comparisons.
+// takes samples.
 //
-// Today a binary heap of small keys over a slab of callbacks; cancelling marks the slab's slot, and
-// the key is dropped when it surfaces (or when more than half of the heap is dead, by a sweep).
-// Nothing outside this header knows that.
+// Two halves: what happens stands in a slab of 64-byte nodes, used again last freed first; when it
+// happens is a 16-byte key in an EventOrder, which knows nothing of nodes. A key is the time, then
+// one word that holds phase, sequence and the number of the node:
+//
+//     | phase 3 bits | sequence 37 bits | node 24 bits |
+//
+// The word is unique, so it is also the event's name. A node bears the name of the event it holds;
+// cancelling empties the node, and the key, whose name no node bears any more, is passed over when
+// it comes out. When more keys are dead than alive, all dead ones are thrown out.
 #pragma once
 
 #include <cstddef>
@@ -15,6 +21,8 @@
 #include <vector>
 
 #include "sim/kernel/callback.hpp"
+#include "sim/kernel/error.hpp"
+#include "sim/kernel/event_order.hpp"
 #include "sim/kernel/time.hpp"
 
 namespace hearsay {
@@ -31,15 +39,30 @@ enum class Phase : std::uint8_t {
 /// Names one scheduled event; stays unique after the event has happened. Default: no event, and
 /// cancelling that does nothing.
 struct EventId {
-  std::uint32_t slot = UINT32_MAX;
-  std::uint32_t generation = 0;
+  std::uint64_t name = UINT64_MAX;
   bool operator==(const EventId&) const = default;
 };
 
 class EventQueue {
  public:
-  /// Schedules `callback`. At most 2^32 − 1 events pending and 2^60 scheduled over a run.
-  EventId push(Time time, Phase phase, Callback callback);
+  static constexpr std::size_t pending_max = (std::size_t{1} << 24) - 1;
+  static constexpr std::uint64_t scheduled_max = std::uint64_t{1} << 37;
+
+  /// Schedules `callback`, which must not be empty.
+  /// @throws BrokenInvariant beyond pending_max pending events or scheduled_max over a run.
+  template <class Function>
+  EventId push(Time time, Phase phase, Function&& callback) {
+    if (first_free_ == no_node) add_node();
+    const std::uint32_t taken = first_free_;
+    Node& node = nodes_[taken];
+    node.callback = std::forward<Function>(callback);  // built in its place
+    require(static_cast<bool>(node.callback), "an event was scheduled without a callback");
+    first_free_ = node.next_free;
+    node.name = next_name(phase, taken);
+    order_.push({time.nanoseconds(), node.name});
+    ++size_;
+    return {node.name};
+  }
 
   /// Takes back an event that has not happened. @return false if it has, or was cancelled already.
   bool cancel(EventId id);
@@ -57,30 +80,45 @@ class EventQueue {
     Callback callback;
   };
   /// Removes and returns the first event. The queue must not be empty.
-  Event pop();
+  Event pop() {
+    require(size_ > 0, "an event was taken from an empty queue");
+    EventKey key = order_.pop();
+    while (!alive(key)) key = order_.pop();
+    if (order_.looks_ahead()) fetch_ahead();
+    return {Time::nanoseconds(key.time_ns), static_cast<Phase>(key.order >> phase_shift),
+            release(node_of(key.order))};
+  }
 
  private:
-  static constexpr std::uint32_t no_slot = UINT32_MAX;
-  struct Key {
-    std::int64_t time_ns;
-    std::uint64_t order;  // phase in the top 4 bits, sequence below
-    std::uint32_t slot;
-    std::uint32_t generation;
-  };
-  struct Slot {
+  static constexpr std::uint32_t no_node = UINT32_MAX;
+  static constexpr int node_bits = 24;
+  static constexpr int phase_shift = 61;
+  struct alignas(64) Node {  // a line of the cache
     Callback callback;
-    std::uint32_t generation = 0;
-    std::uint32_t next_free = no_slot;
+    std::uint64_t name = UINT64_MAX;  // of the event that it holds
+    std::uint32_t next_free = no_node;
   };
-  static bool later(const Key& a, const Key& b);
-  bool alive(const Key& key) const { return slots_[key.slot].generation == key.generation; }
-  Callback release(std::uint32_t slot);
-  void drop_dead_top();
-  void sweep();
+  static std::uint32_t node_of(std::uint64_t name) { return name & pending_max; }
+  bool alive(const EventKey& key) const { return nodes_[node_of(key.order)].name == key.order; }
+  std::uint64_t next_name(Phase phase, std::uint32_t node) {
+    require(next_sequence_ < scheduled_max, "more than 2^37 events were scheduled in one run");
+    return (static_cast<std::uint64_t>(phase) << phase_shift) | (next_sequence_++ << node_bits) |
+           node;
+  }
+  Callback release(std::uint32_t node) {
+    Node& freed = nodes_[node];
+    --size_;
+    freed.name = UINT64_MAX;
+    freed.next_free = first_free_;
+    first_free_ = node;
+    return std::move(freed.callback);
+  }
+  void add_node();
+  void fetch_ahead() const;
 
-  std::vector<Key> heap_;
-  std::vector<Slot> slots_;
-  std::uint32_t first_free_ = no_slot;
+  EventOrder order_;
+  std::vector<Node> nodes_;
+  std::uint32_t first_free_ = no_node;
   std::uint64_t next_sequence_ = 0;
   std::size_t size_ = 0;
 };

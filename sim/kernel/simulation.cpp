@@ -51,12 +51,6 @@ Time Simulation::after(Duration span) const {
   return span >= Time::never() - now_ ? Time::never() : now_ + span;
 }
 
-EventId Simulation::schedule(Time time, Phase phase, Callback callback) {
-  require(time >= now_, "an event was scheduled in the past");
-  require(!observing_ || time > now_, "a callback that takes samples scheduled an event at once");
-  return queue_.push(time, phase, std::move(callback));
-}
-
 std::string Simulation::who(AgentId agent) const {
   if (agent == no_agent) return "the run";
   const std::string name = name_of_agent ? name_of_agent(agent) : std::string();

@@ -14,7 +14,9 @@
 #include <exception>
 #include <functional>
 #include <string>
+#include <utility>
 
+#include "sim/kernel/error.hpp"
 #include "sim/kernel/event_queue.hpp"
 #include "sim/kernel/ids.hpp"
 #include "sim/kernel/random.hpp"
@@ -66,7 +68,12 @@ class Simulation {
   /// agent it acts for. At Time::never() it stays pending and does not happen.
   /// @throws BrokenInvariant if `time` is before now(), or is now() while samples are taken
   /// (Phase::observe), which must be the last thing of an instant.
-  EventId schedule(Time time, Phase phase, Callback callback);
+  template <class Function>
+  EventId schedule(Time time, Phase phase, Function&& callback) {
+    require(time >= now_, "an event was scheduled in the past");
+    require(!observing_ || time > now_, "a callback that takes samples scheduled an event at once");
+    return queue_.push(time, phase, std::forward<Function>(callback));
+  }
   bool cancel(EventId id) { return queue_.cancel(id); }
 
   /// From now on failures are charged to `agent`. Callbacks that act for an agent set it first;

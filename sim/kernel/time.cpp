@@ -13,11 +13,11 @@ Duration Duration::seconds(double s) {
                             " s is not within ±9e9 s and cannot be simulated");
   }
   // Whole and fraction apart, so that the product with 1e9 rounds at most the last nanosecond.
-  const double whole = std::floor(size);
-  const double rest = (size - whole) * 1e9;
-  const double down = std::floor(rest);
-  const std::int64_t ns = static_cast<std::int64_t>(whole) * 1'000'000'000 +
-                          static_cast<std::int64_t>(down) + (rest - down >= 0.5 ? 1 : 0);
+  const auto whole = static_cast<std::int64_t>(size);
+  const double rest = (size - static_cast<double>(whole)) * 1e9;
+  const auto down = static_cast<std::int64_t>(rest);
+  const std::int64_t ns =
+      whole * 1'000'000'000 + down + (rest - static_cast<double>(down) >= 0.5 ? 1 : 0);
   return Duration(s < 0 ? -ns : ns);
 }
 

@@ -1,17 +1,21 @@
 // The hold model: N events pending; each turn takes the first and schedules another one later. The
-// floor is std::priority_queue over plain structs; both sides draw the same numbers.
+// floor is std::priority_queue over plain structs; both sides draw the same numbers: Philox4x32-10
+// and the C library's logarithm, so that what is measured is the queue.
 //
 //   hold           the next event comes an exponential time (mean 1 s) later
-//   whole_seconds  the same, rounded up to whole seconds: very many events at one instant
-//   timeouts       each turn also schedules a time-out 3 s ahead and takes back the last one
+//   whole_seconds  the same, rounded to whole seconds: very many events at one instant
+//   bimodal        nine in ten come within a microsecond, the rest within 100 s
+//   timeouts       each turn of `hold` also schedules a time-out 3 s ahead and takes back the last
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <queue>
+#include <string>
 #include <vector>
 
 #include "sim/kernel/event_queue.hpp"
-#include "sim/kernel/random.hpp"
+#include "tools/bench/draw.hpp"
 
 namespace {
 
@@ -19,11 +23,10 @@ using hearsay::Duration;
 using hearsay::EventId;
 using hearsay::EventQueue;
 using hearsay::Phase;
-using hearsay::Stream;
 using hearsay::Time;
 using namespace hearsay::literals;
 
-enum class Load { hold, whole_seconds, timeouts };
+enum class Load { hold, whole_seconds, bimodal, timeouts };
 
 // What happens at an event on both sides: 16 bytes that are added up.
 struct Payload {
@@ -32,15 +35,18 @@ struct Payload {
   void operator()() const { *sum += value; }
 };
 
-Duration ahead(Stream& stream, Load load) {
-  const Duration span = Duration::seconds(stream.exponential(1.0));
-  return load == Load::whole_seconds ? 1_s * (span / 1_s + 1) : span;
+std::int64_t ahead_ns(std::uint64_t& count, Load load) {
+  constexpr std::uint32_t who = 0;
+  if (load == Load::bimodal) {
+    const hearsay::bench::Draw draw = hearsay::bench::draw(count++, who);
+    return static_cast<std::int64_t>(draw.first * (draw.second < 0.9 ? 1e3 : 1e11));
+  }
+  const std::int64_t span_ns = hearsay::bench::exponential_ns(count++, who);
+  constexpr std::int64_t second_ns = 1'000'000'000;
+  return load == Load::whole_seconds ? (span_ns + second_ns / 2) / second_ns * second_ns : span_ns;
 }
 
-Stream draws() { return Stream(1, hearsay::Purpose("hold"), hearsay::Entity{0}); }
-
-template <Load load>
-void floor_queue(benchmark::State& state) {
+struct FloorQueue {
   struct Entry {
     std::int64_t time_ns;
     std::uint64_t sequence;
@@ -52,58 +58,77 @@ void floor_queue(benchmark::State& state) {
     }
   };
   std::priority_queue<Entry, std::vector<Entry>, Later> queue;
-  Stream stream = draws();
   std::uint64_t sequence = 0;
-  std::uint64_t sum = 0;
-  for (std::int64_t i = 0; i < state.range(0); ++i) {
-    queue.push({ahead(stream, load).nanoseconds(), sequence++, {1, &sum}});
-  }
-  for (auto _ : state) {
+
+  void push(std::int64_t time_ns, Payload payload) { queue.push({time_ns, sequence++, payload}); }
+
+  template <Load load>
+  void turn(std::uint64_t& drawn) {
     // A time-out that was taken back is an entry with nothing to add, which is passed over.
     while (queue.top().payload.value == 0) queue.pop();
     const Entry entry = queue.top();
     queue.pop();
     entry.payload();
-    queue.push({entry.time_ns + ahead(stream, load).nanoseconds(), sequence++, {1, &sum}});
+    push(entry.time_ns + ahead_ns(drawn, load), {1, entry.payload.sum});
     if constexpr (load == Load::timeouts) {
-      queue.push({entry.time_ns + (3_s).nanoseconds(), sequence++, {0, &sum}});
+      push(entry.time_ns + (3_s).nanoseconds(), {0, entry.payload.sum});
     }
   }
-  benchmark::DoNotOptimize(sum);
-  state.SetItemsProcessed(state.iterations());
-}
+};
 
-template <Load load>
-void our_queue(benchmark::State& state) {
+struct OurQueue {
   EventQueue queue;
-  Stream stream = draws();
-  std::uint64_t sum = 0;
-  for (std::int64_t i = 0; i < state.range(0); ++i) {
-    queue.push(Time::at(ahead(stream, load)), Phase::act, Payload{1, &sum});
-  }
   EventId timeout;
-  for (auto _ : state) {
+  std::uint64_t* sum = nullptr;
+
+  void push(std::int64_t time_ns, Payload payload) {
+    sum = payload.sum;
+    queue.push(Time::nanoseconds(time_ns), Phase::act, payload);
+  }
+
+  template <Load load>
+  void turn(std::uint64_t& drawn) {
     EventQueue::Event event = queue.pop();
     event.callback();
-    queue.push(event.time + ahead(stream, load), Phase::act, Payload{1, &sum});
+    push((event.time + Duration::nanoseconds(ahead_ns(drawn, load))).nanoseconds(), {1, sum});
     if constexpr (load == Load::timeouts) {
       queue.cancel(timeout);
-      timeout = queue.push(event.time + 3_s, Phase::act, Payload{0, &sum});
+      timeout = queue.push(event.time + 3_s, Phase::act, Payload{0, sum});
     }
   }
+};
+
+template <class Queue, Load load>
+void hold(benchmark::State& state) {
+  Queue queue;
+  std::uint64_t drawn = 0;
+  std::uint64_t sum = 0;
+  for (std::int64_t i = 0; i < state.range(0); ++i) queue.push(ahead_ns(drawn, load), {1, &sum});
+  // As many turns as events: what is timed is the steady state.
+  for (std::int64_t i = 0; i < state.range(0); ++i) queue.template turn<load>(drawn);
+  for (auto _ : state) queue.template turn<load>(drawn);
   benchmark::DoNotOptimize(sum);
   state.SetItemsProcessed(state.iterations());
 }
 
-void sizes(benchmark::internal::Benchmark* benchmark) {
-  benchmark->Arg(1'000)->Arg(100'000)->Arg(1'000'000);
+void register_load(const char* name, benchmark::internal::Function* floor,
+                   benchmark::internal::Function* ours) {
+  for (const int pending : {1'000, 100'000, 1'000'000}) {
+    // Whole rounds of whatever a queue does once in a while.
+    const int turns = std::max(2'000'000, 4 * pending);
+    const std::string row = std::string(name) + "/" + std::to_string(pending);
+    benchmark::RegisterBenchmark(("floor/" + row).c_str(), floor)->Arg(pending)->Iterations(turns);
+    benchmark::RegisterBenchmark(("ours/" + row).c_str(), ours)->Arg(pending)->Iterations(turns);
+  }
 }
 
-BENCHMARK(floor_queue<Load::hold>)->Name("floor/hold")->Apply(sizes);
-BENCHMARK(our_queue<Load::hold>)->Name("ours/hold")->Apply(sizes);
-BENCHMARK(floor_queue<Load::whole_seconds>)->Name("floor/whole_seconds")->Apply(sizes);
-BENCHMARK(our_queue<Load::whole_seconds>)->Name("ours/whole_seconds")->Apply(sizes);
-BENCHMARK(floor_queue<Load::timeouts>)->Name("floor/timeouts")->Apply(sizes);
-BENCHMARK(our_queue<Load::timeouts>)->Name("ours/timeouts")->Apply(sizes);
+const bool registered = [] {
+  register_load("hold", hold<FloorQueue, Load::hold>, hold<OurQueue, Load::hold>);
+  register_load("whole_seconds", hold<FloorQueue, Load::whole_seconds>,
+                hold<OurQueue, Load::whole_seconds>);
+  register_load("bimodal", hold<FloorQueue, Load::bimodal>, hold<OurQueue, Load::bimodal>);
+  register_load("timeouts", hold<FloorQueue, Load::timeouts>, hold<OurQueue, Load::timeouts>);
+  return true;
+}();
 
 }  // namespace

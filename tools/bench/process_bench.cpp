@@ -1,6 +1,7 @@
 // Coroutines that sleep: 10,000 of them, each for an exponential time (mean 1 s) again and again.
 // The floor is a std::priority_queue that resumes bare coroutine handles; both sides draw the same
-// numbers. An item is one wake-up.
+// numbers. An item is one wake-up. Ours must stay within 400 bytes a process: its frame, its handle
+// and its share of the queue.
 #include <benchmark/benchmark.h>
 
 #include <coroutine>
@@ -10,22 +11,20 @@
 #include <vector>
 
 #include "sim/kernel/process.hpp"
+#include "tools/bench/draw.hpp"
+#include "tools/bench/memory.hpp"
 
 namespace {
 
 using hearsay::AgentId;
 using hearsay::Duration;
-using hearsay::Entity;
 using hearsay::Process;
-using hearsay::Purpose;
 using hearsay::Simulation;
-using hearsay::Stream;
+using hearsay::bench::exponential_ns;
 
 constexpr std::uint64_t wake_ups = 1'000'000;
 
-Stream draws(std::int64_t n) {
-  return Stream(1, Purpose("sleep"), Entity::agent(static_cast<AgentId>(n)));
-}
+constexpr double bytes_max = 400;
 
 // The least that can be called a process.
 struct Bare {
@@ -57,22 +56,22 @@ struct Heap {
 
 class BareSleep {
  public:
-  BareSleep(Heap& heap, Duration span) : heap_(heap), span_(span) {}
+  BareSleep(Heap& heap, std::int64_t span_ns) : heap_(heap), span_ns_(span_ns) {}
   bool await_ready() const noexcept { return false; }
   void await_suspend(std::coroutine_handle<> handle) {
-    heap_.queue.push({heap_.now_ns + span_.nanoseconds(), heap_.sequence++, handle});
+    heap_.queue.push({heap_.now_ns + span_ns_, heap_.sequence++, handle});
   }
   void await_resume() noexcept {}
 
  private:
   Heap& heap_;
-  Duration span_;
+  std::int64_t span_ns_;
 };
 
-Bare sleep_barely(Heap& heap, Stream stream, std::uint64_t& count) {
-  for (;;) {
-    const Duration span = Duration::seconds(stream.exponential(1.0));
-    co_await BareSleep(heap, span);
+Bare sleep_barely(Heap& heap, std::uint32_t who, std::uint64_t& count) {
+  for (std::uint64_t turn = 0;; ++turn) {
+    const std::int64_t span_ns = exponential_ns(turn, who);
+    co_await BareSleep(heap, span_ns);
     ++count;
   }
 }
@@ -83,8 +82,8 @@ void floor_processes(benchmark::State& state) {
     state.PauseTiming();
     Heap heap;
     std::vector<Bare> all;
-    for (std::int64_t i = 0; i < state.range(0); ++i) {
-      all.push_back(sleep_barely(heap, draws(i), count));
+    for (std::uint32_t i = 0; i < state.range(0); ++i) {
+      all.push_back(sleep_barely(heap, i, count));
     }
     state.ResumeTiming();
     for (std::uint64_t i = 0; i < wake_ups; ++i) {
@@ -100,9 +99,9 @@ void floor_processes(benchmark::State& state) {
   state.SetItemsProcessed(static_cast<std::int64_t>(count));
 }
 
-Process sleep_well(Simulation& simulation, Stream stream, std::uint64_t& count) {
-  for (;;) {
-    const Duration span = Duration::seconds(stream.exponential(1.0));
+Process sleep_well(Simulation& simulation, std::uint32_t who, std::uint64_t& count) {
+  for (std::uint64_t turn = 0;; ++turn) {
+    const Duration span = Duration::nanoseconds(exponential_ns(turn, who));
     co_await hearsay::sleep(simulation, span);
     ++count;
   }
@@ -111,22 +110,28 @@ Process sleep_well(Simulation& simulation, Stream stream, std::uint64_t& count) 
 void our_processes(benchmark::State& state) {
   std::uint64_t count = 0;
   const auto pending = static_cast<std::uint64_t>(state.range(0));
+  double bytes = 0;
   for (auto _ : state) {
     state.PauseTiming();
     {
       // Their beginnings are events, too.
+      const std::size_t before = hearsay::bench::bytes_held();
       Simulation simulation({.events_max = wake_ups + pending});
       std::vector<Process> all;
-      for (std::int64_t i = 0; i < state.range(0); ++i) {
-        all.push_back(sleep_well(simulation, draws(i), count));
+      for (std::uint32_t i = 0; i < state.range(0); ++i) {
+        all.push_back(sleep_well(simulation, i, count));
         all.back().start(simulation, static_cast<AgentId>(i));
       }
       state.ResumeTiming();
       benchmark::DoNotOptimize(simulation.run().events);
       state.PauseTiming();
+      bytes = static_cast<double>(hearsay::bench::bytes_held() - before) /
+              static_cast<double>(state.range(0));
     }
     state.ResumeTiming();
   }
+  state.counters["bytes_per_process"] = bytes;
+  if (bytes > bytes_max) state.SkipWithError("more than 400 bytes a process");
   state.SetItemsProcessed(static_cast<std::int64_t>(count));
 }
 

@@ -119,6 +119,7 @@ EventOrder::Ahead EventOrder::ahead() const {
 
 void EventOrder::sort_top() {
   sorted_.swap(top_);
+  top_first_ns_ = INT64_MAX;
   sort(sorted_);
   buckets_used_ = 0;
   current_ = 0;
@@ -128,14 +129,8 @@ void EventOrder::sort_top() {
 }
 
 void EventOrder::spread_top() {
-  std::int64_t first_ns = INT64_MAX;
-  std::int64_t last_ns = INT64_MIN;
-  for (const EventKey& key : top_) {
-    first_ns = std::min(first_ns, key.time_ns);
-    last_ns = std::max(last_ns, key.time_ns);
-  }
-  if (first_ns == last_ns) return sort_top();
-  window_start_ns_ = first_ns;
+  if (top_first_ns_ == INT64_MAX) return sort_top();  // no window ends after that
+  window_start_ns_ = top_first_ns_;
   const auto start = static_cast<std::uint64_t>(window_start_ns_);
   const std::uint64_t span = static_cast<std::uint64_t>(median_time_ns(top_)) - start;
   const std::uint64_t buckets = std::bit_ceil(top_.size() / 2 / keys_a_bucket + 1);
@@ -149,13 +144,23 @@ void EventOrder::spread_top() {
                        ? static_cast<std::int64_t>(start + (buckets_used_ << bucket_shift_))
                        : INT64_MAX;
 
+  // Which keys stay is random, so there is no branch on it: both copies are made, one is kept.
+  std::array<EventKey, 64> leaving;
   std::size_t kept = 0;
-  for (const EventKey& key : top_) {
-    if (key.time_ns < window_end_ns_) {
-      put(bucket_of(key.time_ns), key);
-    } else {
-      top_[kept++] = key;
+  top_first_ns_ = INT64_MAX;
+  for (std::size_t block = 0; block < top_.size(); block += leaving.size()) {
+    std::size_t left = 0;
+    const std::size_t end = std::min(top_.size(), block + leaving.size());
+    for (std::size_t i = block; i < end; ++i) {
+      const EventKey key = top_[i];
+      const bool leaves = key.time_ns < window_end_ns_;
+      top_first_ns_ = std::min(top_first_ns_, leaves ? INT64_MAX : key.time_ns);
+      leaving[left] = key;
+      left += leaves;
+      top_[kept] = key;
+      kept += !leaves;
     }
+    for (std::size_t i = 0; i < left; ++i) put(bucket_of(leaving[i].time_ns), leaving[i]);
   }
   top_.resize(kept);
 }
@@ -185,6 +190,12 @@ void EventOrder::gather() {
   current_ = 0;
   window_start_ns_ = INT64_MIN;
   window_end_ns_ = INT64_MIN;
+  note_first();
+}
+
+void EventOrder::note_first() {
+  top_first_ns_ = INT64_MAX;
+  for (const EventKey& key : top_) top_first_ns_ = std::min(top_first_ns_, key.time_ns);
 }
 
 }  // namespace hearsay

@@ -1,6 +1,6 @@
 // The order of pending events: small keys in, the smallest key out.
 //
-// A heap moves each key log N times, through memory that no cache foresees. Here a key moves at most
+// A heap moves each key log N times, through memory that no cache foresees. Here a key moves two or
 // three times, whatever N is, and nearly always to the end of something:
 //
 //     pushed            <- sooner                                                later ->
@@ -25,14 +25,15 @@
 //
 // What could go wrong, and what is done about it:
 //   - Many keys at one instant: they share a bucket in order of insertion, so there is nothing to
-//     sort. A push at the instant that is being used up, the usual case of
-//     "now", goes to the end of `sorted`.
+//     sort. A push at the instant that is being used up, the usual case of "now", goes to the end
+//     of `sorted`.
 //   - A window whose spans do not fit what is pushed later (a quiet top, then a burst): `late`
 //     grows to a share of all keys, and everything is thrown back into the top and spread anew.
 //   - Few keys: no window, the top is sorted as a whole.
 // The idea is the ladder queue's (Tang, Goh, Thng, ACM TOMACS 15, 2005), with one rung.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -61,7 +62,10 @@ class EventOrder {
 
   void push(EventKey key) {
     ++size_;
-    if (key.time_ns >= window_end_ns_) return top_.push_back(key);
+    if (key.time_ns >= window_end_ns_) {
+      top_first_ns_ = std::min(top_first_ns_, key.time_ns);
+      return top_.push_back(key);
+    }
     const std::size_t bucket = bucket_of(key.time_ns);
     if (bucket > current_) return put(bucket, key);
     push_near(key);
@@ -86,6 +90,7 @@ class EventOrder {
     gather();
     std::erase_if(top_, [&](const EventKey& key) { return !keep(key); });
     size_ = top_.size();
+    note_first();
   }
 
   /// What comes out next, in order, and what comes after that, for whoever wants to have in the
@@ -134,6 +139,7 @@ class EventOrder {
   void spread_top();
   void drain(Bucket& bucket, std::vector<EventKey>* into);
   void gather();
+  void note_first();
 
   std::vector<EventKey> sorted_;
   std::size_t next_ = 0;  // what stands before it in `sorted_` is used up
@@ -145,6 +151,7 @@ class EventOrder {
   std::int64_t window_end_ns_ = INT64_MIN;  // exclusive
   int bucket_shift_ = 0;                    // a bucket spans 2^shift ns
   std::vector<EventKey> top_;
+  std::int64_t top_first_ns_ = INT64_MAX;
   std::size_t size_ = 0;
   std::vector<Chunk> chunks_;
   std::uint32_t free_chunk_ = none;

@@ -137,7 +137,7 @@ void describe(V& v, Scenario& s) {
   v.field("duration_s", s.duration_s, time_span(false),
           "how long the run lasts; default with a log: its span");
   v.field("seed", s.seed, at_least(0), "of every random draw");
-  v.field("events_max", s.events_max, at_least(1), "the run fails after so many events");
+  v.field("events_max", s.events_max, between(1, 1e11), "the run fails after so many events");
   v.table("world", s.world, "what is true");
   v.table("radio", s.radio, "how agents hear one another");
   v.table("agents", s.agents, "at least one [[agents]]");

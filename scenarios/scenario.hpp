@@ -98,7 +98,7 @@ struct Scenario {
   std::string file;                  ///< where it came from; not part of the scenario's content
   std::optional<double> duration_s;  ///< > 0; with a log the default is the log's span
   std::uint64_t seed = 1;
-  std::uint64_t events_max = 1'000'000'000'000;
+  std::uint64_t events_max = 100'000'000'000;
   WorldSpec world;
   RadioSpec radio;
   std::vector<AgentSpec> agents;  ///< at least one

@@ -6,7 +6,7 @@ namespace {
 
 // Below this many keys throwing out dead ones is not worth its call.
 constexpr std::size_t retain_from = 64;
-// Fewer nodes, and whom they act on, are in the cache anyway.
+// Of fewer events the objects on which they act are in the cache anyway.
 constexpr std::size_t fetch_from = 2048;
 
 }  // namespace
@@ -31,10 +31,10 @@ Time EventQueue::next_time() {
 // Nodes of the bucket after the next, which will be here when that bucket is the next; of the next
 // one the objects on which their callbacks act, since by now its nodes are here.
 void EventQueue::fetch_ahead() const {
-  if (nodes_.size() < fetch_from) return;
   const auto [next, after] = order_.ahead();
-  for (const EventKey& key : next) nodes_[node_of(key.order)].callback.prefetch();
   for (const EventKey& key : after) __builtin_prefetch(&nodes_[node_of(key.order)]);
+  if (nodes_.size() < fetch_from) return;
+  for (const EventKey& key : next) nodes_[node_of(key.order)].callback.prefetch();
 }
 
 void EventQueue::add_node() {

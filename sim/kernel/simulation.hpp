@@ -50,8 +50,8 @@ class Simulation {
  public:
   struct Options {
     std::uint64_t seed = 1;
-    Time end = Time::never();                      ///< events at this instant still happen
-    std::uint64_t events_max = 1'000'000'000'000;  ///< budget; the run ends when it is spent
+    Time end = Time::never();                    ///< events at this instant still happen
+    std::uint64_t events_max = 100'000'000'000;  ///< budget; the run ends when it is spent
     Record::Options record;
   };
   explicit Simulation(const Options& options);

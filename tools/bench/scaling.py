@@ -1,0 +1,77 @@
+#!/usr/bin/env python3
+"""How cost grows: CPU time against agents and against simulated time, memory against simulated time.
+
+Usage: scaling.py HEARSAY [--hour]     writes Markdown; --hour adds an hour of 10,000 agents (minutes)
+"""
+import math
+import os
+import resource
+import statistics
+import subprocess
+import sys
+
+import numpy
+
+SPACING_M = 20.0
+REPETITIONS = 3
+SCENARIO = os.path.join(os.path.dirname(os.path.abspath(__file__)), "scale.toml")
+
+
+def run(hearsay, agents, duration_s):
+    """CPU seconds and peak memory in MB of one run."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    sets = [f"agents.count={agents}", f"agents.circle.radius_m={agents * SPACING_M / (2 * math.pi)!r}",
+            f"duration_s={float(duration_s)!r}"]
+    # A process of its own between, so that the peak is this run's and not the largest so far.
+    code = ("import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True, "
+            "stdout=subprocess.DEVNULL); "
+            "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)")
+    command = [hearsay, "run", SCENARIO, "--digest"] + [word for s in sets for word in ("--set", s)]
+    peak = subprocess.run([sys.executable, "-S", "-c", code] + command, check=True,
+                          capture_output=True, text=True)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    cpu_s = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    return cpu_s, int(peak.stdout) / 1024
+
+
+def cpu_s(hearsay, agents, duration_s):
+    return statistics.median(run(hearsay, agents, duration_s)[0] for _ in range(REPETITIONS))
+
+
+def exponent(sizes, times):
+    return numpy.polyfit(numpy.log(sizes), numpy.log(times), 1)[0]
+
+
+def section(title, unit, sizes, times):
+    print(f"\n{title}: exponent {exponent(sizes, times):.3f} "
+          f"(least squares of log time on log {unit}).\n")
+    print(f"| {unit} | CPU time [s] | [µs] a delivery |")
+    print("|---|---|---|")
+    return zip(sizes, times)
+
+
+def main():
+    hearsay = sys.argv[1]
+    start_s = cpu_s(hearsay, 2, 0.001)  # what a process costs that does nothing; taken off below
+    print("\n## How cost grows\n")
+    print("`tools/bench/scale.toml`: agents 20 m apart on a ring, six in range of each, that look at "
+          "one target and talk once a second under ci-det, ledger off. Medians of "
+          f"{REPETITIONS} runs of the whole program, less the {1e3 * start_s:.0f} ms of a run that "
+          "does nothing.")
+    agents = [10, 30, 100, 300, 1000, 3000, 10000]
+    duration_s = 300
+    times = [cpu_s(hearsay, n, duration_s) - start_s for n in agents]
+    for n, t in section(f"Against the number of agents, {duration_s} s each", "agents", agents, times):
+        print(f"| {n} | {t:.3f} | {1e6 * t / (6 * n * duration_s):.2f} |")
+    durations_s = [60, 180, 600, 1800, 7200]
+    times = [cpu_s(hearsay, 100, d) - start_s for d in durations_s]
+    for d, t in section("Against simulated time, 100 agents", "simulated s", durations_s, times):
+        print(f"| {d} | {t:.3f} | {1e6 * t / (6 * 100 * d):.2f} |")
+    if "--hour" in sys.argv:
+        minute, hour = (run(hearsay, 10000, d)[1] for d in (60, 3600))
+        print(f"\nPeak memory with 10,000 agents: {minute:.1f} MB after a minute of simulated time, "
+              f"{hour:.1f} MB after an hour ({hour / minute - 1:+.1%}).")
+
+
+if __name__ == "__main__":
+    main()

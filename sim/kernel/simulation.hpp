@@ -69,6 +69,15 @@ class Simulation {
   EventId schedule(Time time, Phase phase, Callback callback);
   bool cancel(EventId id) { return queue_.cancel(id); }
 
+  /// For an event with several instants, such as a packet on its way from hearer to hearer. The
+  /// event that is happening goes on at `time` without a way through the queue, if nothing else is
+  /// due before or at that instant and the run may still have an event there: then the clock stands
+  /// at `time`, one more event has begun, and nobody acts. Else nothing changes, and the rest of
+  /// the event is to be scheduled. Both ways give the same run.
+  /// @return whether the clock stands at `time`.
+  /// @throws BrokenInvariant if no event is happening, or `time` is before now().
+  bool go_on(Time time, Phase phase);
+
   /// From now on failures are charged to `agent`. Callbacks that act for an agent set it first;
   /// it is reset to no_agent before each event.
   void acting_for(AgentId agent) { acting_ = agent; }
@@ -96,6 +105,7 @@ class Simulation {
 
  private:
   std::string who(AgentId agent) const;
+  void begin_event(Time time, Phase phase);
 
   Options options_;
   Time now_;
@@ -103,6 +113,7 @@ class Simulation {
   Record record_;
   AgentId acting_ = no_agent;
   bool started_ = false;
+  bool happening_ = false;  // an event is
   bool observing_ = false;
   bool failed_ = false;
   RunEnd end_;

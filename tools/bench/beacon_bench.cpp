@@ -1,9 +1,10 @@
 // Beacons: n radios, about ten in range of each, broadcast 200 bytes every second at a phase of
-// their own over 1 Mbit/s with 10 % loss, for 60 s. An item is a packet at one hearer, lost or not.
+// their own over 1 Mbit/s with 10 % loss and the delay of light, for 60 s. An item is a packet at
+// one hearer, lost or not.
 //
-// The floor does the same with plain arrays: neighbours in compressed rows, one entry of a
-// std::priority_queue a beacon and a delivery, the same keyed draws; it records nothing. Ours is
-// Radio with a heap event a packet, every fate counted and fed to the digest.
+// The floor does the same with plain arrays: neighbours and their delays in compressed rows, one
+// entry of a std::priority_queue a beacon and a delivery, the same keyed draws; it records nothing.
+// Ours is Radio, every fate counted and fed to the digest.
 
 #include <benchmark/benchmark.h>
 
@@ -28,6 +29,7 @@ namespace {
 constexpr std::uint64_t seed = 1;
 constexpr double range_m = 100.0;
 constexpr double neighbours_mean = 10.0;
+constexpr double light_m_per_s = 299'792'458.0;
 constexpr double rate_bps = 1e6;
 constexpr double loss_probability = 0.1;
 constexpr std::size_t beacon_bytes = 200;
@@ -37,6 +39,7 @@ constexpr Time end = Time::at(60_s);
 struct Layout {
   Topology topology;
   std::vector<Duration> phase;
+  std::vector<std::int64_t> delay_ns;  // a link
 };
 
 Layout make_layout(int agents) {
@@ -52,7 +55,12 @@ Layout make_layout(int agents) {
     const auto period_ns = static_cast<std::uint64_t>(period.nanoseconds());
     phase.push_back(Duration::nanoseconds(static_cast<std::int64_t>(place.below(period_ns))));
   }
-  return {Topology::disk(positions_m, range_m), std::move(phase)};
+  Layout layout{Topology::disk(positions_m, range_m), std::move(phase), {}};
+  for (std::size_t link = 0; link < layout.topology.links(); ++link) {
+    const double delay_s = layout.topology.length_m(link) / light_m_per_s;
+    layout.delay_ns.push_back(Duration::seconds(delay_s).nanoseconds());
+  }
+  return layout;
 }
 
 struct Tally {
@@ -89,8 +97,10 @@ Tally run_floor(const Layout& layout) {
     if (entry.receiver == no_agent) {
       std::int64_t& free_ns = free_at_ns[static_cast<std::size_t>(entry.sender)];
       free_ns = std::max(free_ns, entry.time_ns) + air_ns;
+      std::size_t link = layout.topology.first_link(entry.sender);
       for (const AgentId hearer : layout.topology.neighbours(entry.sender)) {
-        queue.push({free_ns, sequence++, entry.tick, entry.sender, hearer});
+        const std::int64_t time_ns = free_ns + layout.delay_ns[link++];
+        queue.push({time_ns, sequence++, entry.tick, entry.sender, hearer});
       }
       queue.push({entry.time_ns + period.nanoseconds(), sequence++, entry.tick + 1, entry.sender,
                   no_agent});
@@ -131,7 +141,9 @@ Tally run_ours(const Layout& layout) {
   Xxh3Digest digest;
   Simulation simulation({.seed = seed, .end = end, .record = {.digest = &digest}});
   Radio radio(simulation, layout.topology,
-              {.rate_bps = rate_bps, .loss_probability = loss_probability});
+              {.rate_bps = rate_bps,
+               .loss_probability = loss_probability,
+               .propagation_m_per_s = light_m_per_s});
   std::vector<std::unique_ptr<Beacon>> beacons;
   for (AgentId a = 0; a < layout.topology.agents(); ++a) {
     beacons.push_back(std::make_unique<Beacon>(simulation, radio, a));

@@ -1,5 +1,6 @@
 #include "sim/kernel/simulation.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "sim/kernel/error.hpp"
@@ -54,6 +55,7 @@ Time Simulation::after(Duration span) const {
 EventId Simulation::schedule(Time time, Phase phase, Callback callback) {
   require(time >= now_, "an event was scheduled in the past");
   require(!observing_ || time > now_, "a callback that takes samples scheduled an event at once");
+  quiet_until_ = std::min(quiet_until_, time);
   return queue_.push(time, phase, std::move(callback));
 }
 
@@ -62,7 +64,10 @@ bool Simulation::go_on(Time time, Phase phase) {
   require(time >= now_, "an event was to go on in the past");
   if (failed_ || time > options_.end || time == Time::never()) return false;
   if (end_.events == options_.events_max) return false;
-  if (!queue_.empty() && queue_.next_time() <= time) return false;
+  if (time >= quiet_until_) {
+    quiet_until_ = queue_.empty() ? Time::never() : queue_.next_time();
+    if (time >= quiet_until_) return false;
+  }
   // Behind samples no more may happen at their instant: schedule() will say so.
   if (observing_ && time == now_) return false;
   begin_event(time, phase);

@@ -114,6 +114,7 @@ class Simulation {
   AgentId acting_ = no_agent;
   bool started_ = false;
   bool happening_ = false;  // an event is
+  Time quiet_until_;        // nothing is due before, as far as go_on() has looked
   bool observing_ = false;
   bool failed_ = false;
   RunEnd end_;

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "net/send_queue.hpp"
 #include "sim/kernel/error.hpp"
 
 namespace hearsay {
@@ -53,24 +54,38 @@ Time later(Time time, Duration span) {
 
 }  // namespace
 
+// A neighbour's place in the order of arrival.
+struct Radio::Ear {
+  Duration delay;
+  AgentId agent;
+  std::uint32_t place;  // among the neighbours
+};
+
+// What belongs to a sender, together in memory.
+struct alignas(64) Radio::Sender {
+  SendQueue queue;
+  SenderCounts counts;
+};
+
 // Where a packet goes.
 struct Radio::Route {
-  AgentId sender;
-  bool reaches = true;                    // false: addressed to somebody out of range
-  std::span<const AgentId> hearers;       // in order of arrival
-  std::span<const Duration> delays;       // of each, ascending; empty: they hear at once
-  std::span<const std::uint32_t> places;  // of each link behind the first; empty: one by one
+  AgentId sender = no_agent;
+  bool reaches = true;   // false: addressed to somebody out of range
+  std::size_t size = 0;  // how many may hear
   std::size_t first_link = 0;
-  Duration delay;  // of all
+  const AgentId* neighbours = nullptr;  // of whom the links go on from first_link
+  const Ear* ears = nullptr;            // the same in order of arrival; null: they hear at once
+  Duration delay;                       // of all
 
-  std::size_t link(std::size_t i) const { return first_link + (places.empty() ? i : places[i]); }
-  Duration delay_of(std::size_t i) const { return delays.empty() ? Duration() : delays[i]; }
+  AgentId hearer(std::size_t i) const { return ears ? ears[i].agent : neighbours[i]; }
+  std::size_t link(std::size_t i) const { return first_link + (ears ? ears[i].place : i); }
+  Duration delay_of(std::size_t i) const { return ears ? ears[i].delay : Duration(); }
 };
 
 // A packet from its hand-over to the last of its fates.
 struct Radio::Transmission {
   std::vector<std::byte> bytes;    // keeps its capacity for the slot's next packet
-  std::vector<std::uint8_t> lost;  // a flag a hearer, drawn at hand-over
+  std::vector<std::uint8_t> lost;  // flags of the hearers, drawn at hand-over
   RiderPtr rider;
   EventId arrival;        // the next one, unless it is just happening
   Time sent, start, end;  // handed over; first and last bit
@@ -82,7 +97,7 @@ struct Radio::Transmission {
   NameId kind = 0;
   bool under_way = false;
 
-  bool done() const { return settled == route.hearers.size(); }
+  bool done() const { return settled == route.size; }
   Time next() const { return later(arrives, done() ? Duration() : route.delay_of(settled)); }
   MessageRow row(Time now) const {
     return {sent, now, route.sender, no_agent, kind, static_cast<std::uint32_t>(bytes.size()), 0};
@@ -94,8 +109,7 @@ Radio::Radio(Simulation& simulation, Topology topology, const RadioOptions& opti
   check(options_, topology_);
   const auto agents = static_cast<std::size_t>(topology_.agents());
   receivers_.resize(agents, nullptr);
-  queues_.resize(agents);
-  counts_.resize(agents);
+  senders_.resize(agents);
   link_packets_.resize(topology_.links(), 0);
   for (AgentId a = 0; a < topology_.agents(); ++a) {
     hearers_max_ = std::max(hearers_max_, topology_.neighbours(a).size());
@@ -108,22 +122,17 @@ Radio::Radio(Simulation& simulation, Topology topology, const RadioOptions& opti
 }
 
 void Radio::order_arrivals() {
-  hearers_.reserve(topology_.links());
-  delays_.reserve(topology_.links());
-  places_.reserve(topology_.links());
-  std::vector<std::pair<Duration, std::uint32_t>> row;
+  ears_.reserve(topology_.links());
   for (AgentId sender = 0; sender < topology_.agents(); ++sender) {
     const std::span<const AgentId> neighbours = topology_.neighbours(sender);
-    row.clear();
+    const std::size_t first = topology_.first_link(sender);
     for (std::uint32_t place = 0; place < neighbours.size(); ++place) {
-      row.emplace_back(delay(topology_.first_link(sender) + place), place);
+      ears_.push_back({delay(first + place), neighbours[place], place});
     }
-    std::sort(row.begin(), row.end());
-    for (const auto& [delay, place] : row) {
-      hearers_.push_back(neighbours[place]);
-      delays_.push_back(delay);
-      places_.push_back(place);
-    }
+    std::sort(ears_.begin() + static_cast<std::ptrdiff_t>(first), ears_.end(),
+              [](const Ear& a, const Ear& b) {
+                return a.delay != b.delay ? a.delay < b.delay : a.agent < b.agent;
+              });
   }
 }
 
@@ -146,12 +155,14 @@ void Radio::attach(AgentId agent, Receiver& receiver) {
   receivers_[index(agent, "receiver")] = &receiver;
 }
 
-const SenderCounts& Radio::counts(AgentId sender) const { return counts_[index(sender, "sender")]; }
+const SenderCounts& Radio::counts(AgentId sender) const {
+  return senders_[index(sender, "sender")].counts;
+}
 
 std::uint32_t Radio::take_slot() {
   if (free_slots_.empty()) {
     slots_.push_back(std::make_unique<Transmission>());
-    slots_.back()->lost.reserve(hearers_max_);
+    slots_.back()->lost.resize(hearers_max_, 0);
     free_slots_.reserve(slots_.capacity());  // so that giving back never allocates
     return static_cast<std::uint32_t>(slots_.size() - 1);
   }
@@ -182,15 +193,14 @@ Duration Radio::delay(std::size_t link) const {
 Radio::Route Radio::route(AgentId sender, const AgentId& receiver) const {
   Route route{.sender = sender, .first_link = topology_.first_link(sender)};
   if (receiver == no_agent) {
-    route.hearers = topology_.neighbours(sender);
-    if (hearers_.empty()) return route;
-    const std::size_t links = route.hearers.size();
-    route.hearers = std::span(hearers_).subspan(route.first_link, links);
-    route.delays = std::span(delays_).subspan(route.first_link, links);
-    route.places = std::span(places_).subspan(route.first_link, links);
+    const std::span<const AgentId> neighbours = topology_.neighbours(sender);
+    route.size = neighbours.size();
+    route.neighbours = neighbours.data();
+    if (!ears_.empty()) route.ears = ears_.data() + route.first_link;
     return route;
   }
-  route.hearers = std::span(&receiver, 1);
+  route.size = 1;
+  route.neighbours = &receiver;
   const std::int64_t link = topology_.link(sender, receiver);
   route.reaches = link >= 0;
   if (!route.reaches) return route;
@@ -199,33 +209,43 @@ Radio::Route Radio::route(AgentId sender, const AgentId& receiver) const {
   return route;
 }
 
+// Of many packets in a row it is the same.
+Duration Radio::air_time(std::uint64_t bytes) {
+  if (bytes != air_bytes_) {
+    air_bytes_ = bytes;
+    air_time_ = at_most_9e9(static_cast<double>(bytes) * 8.0 / options_.rate_bps);
+  }
+  return air_time_;
+}
+
 // Uses up the packet's draw on each of its links and, unless `lost` is null, notes what is lost.
-void Radio::draw_losses(const Outgoing& packet, const Route& route,
-                        std::vector<std::uint8_t>* lost) {
-  if (lost) lost->assign(route.hearers.size(), 0);
+void Radio::draw_losses(const Outgoing& packet, const Route& route, std::uint8_t* lost) {
   if (!route.reaches) return;
-  const double p = lost ? options_.loss_probability : 0.0;  // draws are keyed: none need be made
-  for (std::size_t i = 0; i < route.hearers.size(); ++i) {
+  const double p = options_.loss_probability;
+  const bool draws = lost && p > 0.0;  // they are keyed: none need be made
+  const std::uint64_t seed = simulation_.seed();
+  const Purpose purpose = packet.tick ? loss_of_tick : loss_of_packet;
+  for (std::size_t i = 0; i < route.size; ++i) {
     const std::uint64_t count = packet.tick ? *packet.tick : link_packets_[route.link(i)]++;
-    if (p <= 0.0) continue;
-    (*lost)[i] = simulation_
-                     .stream_at(packet.tick ? loss_of_tick : loss_of_packet,
-                                Entity::link(route.sender, route.hearers[i]), count)
-                     .bernoulli(p);
+    // Who will soon be called: in a large crowd each is far from the one before.
+    __builtin_prefetch(receivers_[static_cast<std::size_t>(route.hearer(i))]);
+    if (!draws) continue;
+    const Entity link = Entity::link(route.sender, route.hearer(i));
+    lost[i] = Stream::uniform_at(seed, purpose, link, count) < p;
   }
 }
 
 bool Radio::send(AgentId sender, const Outgoing& packet) {
-  SendQueue& queue = queues_[index(sender, "sender")];
+  Sender& from = senders_[index(sender, "sender")];
   if (packet.receiver != no_agent) index(packet.receiver, "receiver");
   require(!packet.tick || *packet.tick < ticks_max, "radio: a tick must be below 2^48");
   require(packet.bytes.size() <= std::numeric_limits<std::uint32_t>::max(),
           "radio: a packet must be below 4 GiB");
 
   const Time now = simulation_.now();
-  SenderCounts& counts = counts_[static_cast<std::size_t>(sender)];
+  SenderCounts& counts = from.counts;
   ++counts.packets;
-  if (queue.occupancy(now) >= options_.queue_packets_max) {
+  if (from.queue.occupancy(now) >= options_.queue_packets_max) {
     drop(sender, packet);
     return false;
   }
@@ -233,10 +253,10 @@ bool Radio::send(AgentId sender, const Outgoing& packet) {
   Transmission& t = *slots_[slot];
   t.receiver = packet.receiver;
   t.route = route(sender, t.receiver);
-  counts.expected += t.route.hearers.size();
+  counts.expected += t.route.size;
   reserve(&t.bytes, packet.bytes.size());
   t.bytes.assign(packet.bytes.begin(), packet.bytes.end());
-  draw_losses(packet, t.route, &t.lost);
+  draw_losses(packet, t.route, t.lost.data());
   t.rider = packet.rider;
   t.kind = packet.kind;
   t.serial = transmissions_++;
@@ -244,9 +264,9 @@ bool Radio::send(AgentId sender, const Outgoing& packet) {
 
   const std::uint64_t bytes = packet.bytes.size() + std::uint64_t{options_.header_bytes};
   t.sent = now;
-  t.start = std::max(now, queue.free_at());
-  t.end = later(t.start, at_most_9e9(static_cast<double>(bytes) * 8.0 / options_.rate_bps));
-  queue.push(t.end);
+  t.start = std::max(now, from.queue.free_at());
+  t.end = later(t.start, air_time(bytes));
+  from.queue.push(now, t.end);
   counts.bytes_sent += bytes;
   counts.air_time += t.end - t.start;
   t.arrives = t.route.reaches ? later(later(t.end, options_.latency), t.route.delay) : t.end;
@@ -257,12 +277,12 @@ bool Radio::send(AgentId sender, const Outgoing& packet) {
 
 void Radio::drop(AgentId sender, const Outgoing& packet) {
   const Route to = route(sender, packet.receiver);
-  counts_[static_cast<std::size_t>(sender)].expected += to.hearers.size();
+  senders_[static_cast<std::size_t>(sender)].counts.expected += to.size;
   draw_losses(packet, to, nullptr);
   const Time now = simulation_.now();
   MessageRow row{
       now, now, sender, no_agent, packet.kind, static_cast<std::uint32_t>(packet.bytes.size()), 0};
-  for (const AgentId receiver : to.hearers) settle(&row, receiver, Fate::queue_full);
+  for (std::size_t i = 0; i < to.size; ++i) settle(&row, to.hearer(i), Fate::queue_full);
 }
 
 // The next arrival, unless it is later than any event can be.
@@ -279,31 +299,25 @@ void Radio::settle(MessageRow* row, AgentId receiver, Fate fate) {
   row->receiver = receiver;
   row->fate = fate_names_[f];
   simulation_.record().message(*row);
-  ++counts_[static_cast<std::size_t>(row->sender)].fates[f];
+  ++senders_[static_cast<std::size_t>(row->sender)].counts.fates[f];
 }
 
-// Goes from instant to instant, as far as nothing else comes between.
+// Goes from hearer to hearer, as far as nothing else comes between.
 void Radio::arrive(std::uint32_t slot) {
   Transmission& t = *slots_[slot];
-  deliver(&t);
+  const Route& route = t.route;
+  MessageRow row = t.row(simulation_.now());
+  Packet packet{route.sender, no_agent, t.kind, t.bytes, t.sent, t.rider.get()};
   while (!t.done()) {
-    if (!simulation_.go_on(t.next(), Phase::update)) return schedule(slot);
-    deliver(&t);
-  }
-  release_slot(slot);
-}
-
-// To everybody whom the packet reaches at this instant.
-void Radio::deliver(Transmission* t) {
-  const Route& route = t->route;
-  MessageRow row = t->row(simulation_.now());
-  Packet packet{route.sender, no_agent, t->kind, t->bytes, t->sent, t->rider.get()};
-  const Time next = t->next();
-  while (!t->done() && t->next() == next) {
-    const std::size_t i = t->settled++;
-    const AgentId hearer = route.hearers[i];
+    const Time time = t.next();
+    if (time > row.arrived) {
+      if (!simulation_.go_on(time, Phase::update)) return schedule(slot);
+      row.arrived = time;
+    }
+    const std::size_t i = t.settled++;
+    const AgentId hearer = route.hearer(i);
     const Fate fate = !route.reaches ? Fate::out_of_range
-                      : t->lost[i]   ? Fate::lost
+                      : t.lost[i]    ? Fate::lost
                                      : Fate::delivered;
     settle(&row, hearer, fate);
     Receiver* const receiver = receivers_[static_cast<std::size_t>(hearer)];
@@ -312,6 +326,7 @@ void Radio::deliver(Transmission* t) {
     simulation_.acting_for(hearer);
     receiver->on_packet(packet);
   }
+  release_slot(slot);
 }
 
 void Radio::finish() {
@@ -327,11 +342,11 @@ void Radio::finish() {
   for (const std::uint32_t slot : under_way) {
     Transmission& t = *slots_[slot];
     simulation_.cancel(t.arrival);
-    SenderCounts& counts = counts_[static_cast<std::size_t>(t.route.sender)];
+    SenderCounts& counts = senders_[static_cast<std::size_t>(t.route.sender)].counts;
     if (t.start > now) counts.bytes_sent -= t.bytes.size() + std::uint64_t{options_.header_bytes};
     if (t.end > now) counts.air_time -= t.end - std::max(t.start, now);
     MessageRow row = t.row(now);
-    while (!t.done()) settle(&row, t.route.hearers[t.settled++], Fate::in_flight_at_end);
+    while (!t.done()) settle(&row, t.route.hearer(t.settled++), Fate::in_flight_at_end);
     release_slot(slot);
   }
   for (AgentId sender = 0; sender < topology_.agents(); ++sender) {

@@ -27,7 +27,6 @@
 #include <vector>
 
 #include "net/packet.hpp"
-#include "net/send_queue.hpp"
 #include "net/topology.hpp"
 #include "sim/kernel/simulation.hpp"
 
@@ -97,6 +96,8 @@ class Radio {
   void finish();
 
  private:
+  struct Ear;
+  struct Sender;
   struct Route;
   struct Transmission;
   std::size_t index(AgentId agent, const char* role) const;
@@ -104,26 +105,23 @@ class Radio {
   std::uint32_t take_slot();
   void reserve(std::vector<std::byte>* buffer, std::size_t bytes);
   void release_slot(std::uint32_t slot);
+  Duration air_time(std::uint64_t bytes);
   Duration delay(std::size_t link) const;
   Route route(AgentId sender, const AgentId& receiver) const;
-  void draw_losses(const Outgoing& packet, const Route& route, std::vector<std::uint8_t>* lost);
+  void draw_losses(const Outgoing& packet, const Route& route, std::uint8_t* lost);
   void drop(AgentId sender, const Outgoing& packet);
   void schedule(std::uint32_t slot);
   void arrive(std::uint32_t slot);
-  void deliver(Transmission* t);
   void settle(MessageRow* row, AgentId receiver, Fate fate);
 
   Simulation& simulation_;
   Topology topology_;
   RadioOptions options_;
   std::vector<Receiver*> receivers_;
-  std::vector<SendQueue> queues_;     // a sender
-  std::vector<SenderCounts> counts_;  // a sender
-  // The links of each sender in the order in which a broadcast arrives, rows as in the topology.
-  // Empty if the way takes no time: then they arrive together.
-  std::vector<AgentId> hearers_;
-  std::vector<Duration> delays_;
-  std::vector<std::uint32_t> places_;  // of the hearer among the sender's neighbours
+  std::vector<Sender> senders_;
+  // The neighbours of each sender in the order in which a broadcast arrives, rows as in the
+  // topology. Empty if the way takes no time: then they hear at once.
+  std::vector<Ear> ears_;
   // Pooled. Each stays where it is: a receiver may send, and so grow the pool, during a delivery.
   std::vector<std::unique_ptr<Transmission>> slots_;
   std::vector<std::uint32_t> free_slots_;
@@ -131,6 +129,8 @@ class Radio {
   std::uint64_t transmissions_ = 0;
   std::size_t hearers_max_ = 1;       // of a broadcast of anybody; an addressed packet has one
   std::size_t packet_bytes_max_ = 0;  // so far
+  std::uint64_t air_bytes_ = 0;       // what air_time_ is the time of
+  Duration air_time_;
   std::array<NameId, fate_count> fate_names_{};
 };
 

@@ -4,15 +4,18 @@
 //
 // The floor does the same with plain arrays: neighbours and their delays in compressed rows, one
 // entry of a std::priority_queue a beacon and a delivery, the same keyed draws; it records nothing.
-// Ours is Radio, every fate counted and fed to the digest.
+// Ours is Radio, every fate counted and fed to the digest. What it, the simulation and the topology
+// hold of the heap half-way through is given an agent, and must not be more than 1 kB.
 
 #include <benchmark/benchmark.h>
+#include <malloc.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <memory>
+#include <cstdlib>
+#include <new>
 #include <queue>
 #include <string>
 #include <utility>
@@ -22,6 +25,32 @@
 #include "sim/kernel/random.hpp"
 #include "sim/kernel/simulation.hpp"
 #include "sim/record/digest.hpp"
+
+namespace {
+
+std::size_t heap_bytes = 0;  // handed out by operator new and not given back
+
+void* counted(void* memory) {
+  if (memory == nullptr) throw std::bad_alloc();
+  heap_bytes += malloc_usable_size(memory);
+  return memory;
+}
+void give_back(void* memory) {
+  heap_bytes -= malloc_usable_size(memory);  // 0 of nullptr
+  std::free(memory);
+}
+
+}  // namespace
+
+void* operator new(std::size_t size) { return counted(std::malloc(size)); }
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  const auto to = static_cast<std::size_t>(alignment);
+  return counted(std::aligned_alloc(to, (size + to - 1) / to * to));
+}
+void operator delete(void* memory) noexcept { give_back(memory); }
+void operator delete(void* memory, std::size_t) noexcept { give_back(memory); }
+void operator delete(void* memory, std::align_val_t) noexcept { give_back(memory); }
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { give_back(memory); }
 
 namespace hearsay {
 namespace {
@@ -35,6 +64,7 @@ constexpr double loss_probability = 0.1;
 constexpr std::size_t beacon_bytes = 200;
 constexpr Duration period = 1_s;
 constexpr Time end = Time::at(60_s);
+constexpr double bytes_per_agent_max = 1024.0;
 
 struct Layout {
   Topology topology;
@@ -69,8 +99,12 @@ struct Tally {
   std::uint64_t in_flight = 0;
   bool operator==(const Tally&) const = default;
 };
+struct Outcome {
+  Tally tally;
+  double bytes_per_agent = 0.0;
+};
 
-Tally run_floor(const Layout& layout) {
+Outcome run_floor(const Layout& layout) {
   struct Entry {
     std::int64_t time_ns;
     std::uint64_t sequence;
@@ -104,16 +138,16 @@ Tally run_floor(const Layout& layout) {
       }
       queue.push({entry.time_ns + period.nanoseconds(), sequence++, entry.tick + 1, entry.sender,
                   no_agent});
-    } else if (Stream::at(seed, Purpose("loss of a tick"),
-                          Entity::link(entry.sender, entry.receiver), entry.tick)
-                   .bernoulli(loss_probability)) {
+    } else if (Stream::uniform_at(seed, Purpose("loss of a tick"),
+                                  Entity::link(entry.sender, entry.receiver),
+                                  entry.tick) < loss_probability) {
       ++tally.lost;
     } else {
       ++tally.heard;
     }
   }
   for (; !queue.empty(); queue.pop()) tally.in_flight += queue.top().receiver != no_agent;
-  return tally;
+  return {tally};
 }
 
 class Beacon final : public Receiver {
@@ -137,43 +171,54 @@ class Beacon final : public Receiver {
   std::uint64_t tick_ = 0;
 };
 
-Tally run_ours(const Layout& layout) {
+Outcome run_ours(const Layout& layout) {
+  const int agents = layout.topology.agents();
+  std::vector<Beacon> beacons;
+  beacons.reserve(static_cast<std::size_t>(agents));  // each stays where it is
   Xxh3Digest digest;
+  const std::size_t bytes_before = heap_bytes;
+  std::size_t bytes = 0;
   Simulation simulation({.seed = seed, .end = end, .record = {.digest = &digest}});
   Radio radio(simulation, layout.topology,
               {.rate_bps = rate_bps,
                .loss_probability = loss_probability,
                .propagation_m_per_s = light_m_per_s});
-  std::vector<std::unique_ptr<Beacon>> beacons;
-  for (AgentId a = 0; a < layout.topology.agents(); ++a) {
-    beacons.push_back(std::make_unique<Beacon>(simulation, radio, a));
+  for (AgentId a = 0; a < agents; ++a) {
+    beacons.emplace_back(simulation, radio, a);
     simulation.schedule(Time::at(layout.phase[static_cast<std::size_t>(a)]), Phase::act,
-                        [beacon = beacons.back().get()] { beacon->talk(); });
+                        [beacon = &beacons.back()] { beacon->talk(); });
   }
+  simulation.schedule(Time::at(end.since_start() / 2), Phase::observe,
+                      [&bytes, bytes_before] { bytes = heap_bytes - bytes_before; });
   simulation.run();
   radio.finish();
   simulation.record().finish();
   benchmark::DoNotOptimize(digest.hex());
   Tally tally;
-  for (const auto& beacon : beacons) tally.heard += beacon->heard;
-  for (AgentId a = 0; a < layout.topology.agents(); ++a) {
+  for (const Beacon& beacon : beacons) tally.heard += beacon.heard;
+  for (AgentId a = 0; a < agents; ++a) {
     const auto& fates = radio.counts(a).fates;
     tally.lost += fates[static_cast<std::size_t>(Fate::lost)];
     tally.in_flight += fates[static_cast<std::size_t>(Fate::in_flight_at_end)];
   }
-  return tally;
+  return {tally, static_cast<double>(bytes) / agents};
 }
 
-template <Tally (*run)(const Layout&)>
+template <Outcome (*run)(const Layout&)>
 void beacon(benchmark::State& state, int agents) {
   const Layout layout = make_layout(agents);
-  Tally tally;
+  Outcome outcome;
   for (auto _ : state) {
-    tally = run(layout);
-    benchmark::DoNotOptimize(tally);
+    outcome = run(layout);
+    benchmark::DoNotOptimize(outcome);
   }
+  const Tally& tally = outcome.tally;
   // A rate is worth something only if both do the same work.
-  if (tally != run_floor(layout)) state.SkipWithError("fates differ from the floor's");
+  if (tally != run_floor(layout).tally) state.SkipWithError("fates differ from the floor's");
+  if (outcome.bytes_per_agent > bytes_per_agent_max) {
+    state.SkipWithError("more than 1024 bytes an agent");
+  }
+  if (outcome.bytes_per_agent > 0.0) state.counters["bytes_per_agent"] = outcome.bytes_per_agent;
   const auto deliveries = static_cast<double>(tally.heard + tally.lost);
   state.counters["deliveries"] = deliveries;
   state.counters["deliveries_per_s"] = benchmark::Counter(

@@ -2,8 +2,13 @@
 //
 // A transmitter is a FIFO: packets leave one after another at `rate_bps`, at most
 // `queue_packets_max` wait or are being sent; a packet beyond is dropped (queue_full). What has
-// left arrives `latency` later at every hearer, unless the channel loses it. Losses are keyed draws
-// (seed, link, tick), so the same packets are lost under every fusion rule.
+// left arrives `latency` later at every hearer, and later still by the way there at
+// `propagation_m_per_s`, unless the channel loses it. Losses are keyed draws (seed, link, tick), so
+// the same packets are lost under every fusion rule.
+//
+// A broadcast goes from hearer to hearer, by delay and then by number. Those of one delay are one
+// event; it schedules the next delay's when its hearers have heard. Ties with other events are
+// settled by that: what was in the queue by then comes first.
 //
 // Every packet ends in exactly one fate per potential receiver: the neighbours for a broadcast, the
 // addressee for an addressed packet. Each fate is a row of the simulation's record (its bytes are
@@ -16,6 +21,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -32,6 +38,9 @@ struct RadioOptions {
   std::uint32_t queue_packets_max = 64;  ///< waiting or being sent, ≥ 1
   Duration latency = {};                 ///< ≥ 0, from the last bit sent to arrival
   double loss_probability = 0.0;         ///< Bernoulli, a packet and link, in [0, 1]
+  /// > 0; the way to a hearer takes link length / speed more, to the nearest nanosecond. Infinite:
+  /// no time. A finite speed needs a topology with positions.
+  double propagation_m_per_s = std::numeric_limits<double>::infinity();
 };
 
 /// Gets packets; called in Phase::update, with failures charged to the hearer. It may send, also
@@ -87,23 +96,32 @@ class Radio {
   void finish();
 
  private:
+  struct Ear;
+  struct Sender;
+  struct Route;
   struct Transmission;
-  struct Transmitter;
   std::size_t index(AgentId agent, const char* role) const;
+  void order_arrivals();
   std::uint32_t take_slot();
   void reserve(std::vector<std::byte>* buffer, std::size_t bytes);
   void release_slot(std::uint32_t slot);
-  void draw_losses(const Outgoing& packet, AgentId sender, std::vector<std::uint8_t>* lost);
-  std::span<const AgentId> hearers(AgentId sender, const AgentId& receiver) const;
+  Duration air_time(std::uint64_t bytes);
+  Duration delay(std::size_t link) const;
+  Route route(AgentId sender, const AgentId& receiver) const;
+  void draw_losses(const Outgoing& packet, const Route& route, std::uint8_t* lost);
+  void drop(AgentId sender, const Outgoing& packet);
+  void schedule(std::uint32_t slot);
   void arrive(std::uint32_t slot);
-  void settle_next(Transmission& t, Fate fate);
-  void settle(MessageRow row, Fate fate);
+  void settle(MessageRow* row, AgentId receiver, Fate fate);
 
   Simulation& simulation_;
   Topology topology_;
   RadioOptions options_;
   std::vector<Receiver*> receivers_;
-  std::vector<Transmitter> transmitters_;
+  std::vector<Sender> senders_;
+  // The neighbours of each sender in the order in which a broadcast arrives, rows as in the
+  // topology. Empty if the way takes no time: then they hear at once.
+  std::vector<Ear> ears_;
   // Pooled. Each stays where it is: a receiver may send, and so grow the pool, during a delivery.
   std::vector<std::unique_ptr<Transmission>> slots_;
   std::vector<std::uint32_t> free_slots_;
@@ -111,6 +129,8 @@ class Radio {
   std::uint64_t transmissions_ = 0;
   std::size_t hearers_max_ = 1;       // of a broadcast of anybody; an addressed packet has one
   std::size_t packet_bytes_max_ = 0;  // so far
+  std::uint64_t air_bytes_ = 0;       // what air_time_ is the time of
+  Duration air_time_;
   std::array<NameId, fate_count> fate_names_{};
 };
 

@@ -75,6 +75,13 @@ class Grid {
   std::vector<std::uint64_t> cell_of_;
 };
 
+using Position = std::array<double, 3>;
+
+double squared_distance_m2(const Position& p, const Position& q) {
+  const double dx = q[0] - p[0], dy = q[1] - p[1], dz = q[2] - p[2];
+  return dx * dx + dy * dy + dz * dz;
+}
+
 void check_disk(std::span<const std::array<double, 3>> positions_m, double range_m) {
   if (!(range_m > 0.0) || !std::isfinite(range_m)) {
     std::ostringstream text;
@@ -157,16 +164,24 @@ Topology Topology::disk(std::span<const std::array<double, 3>> positions_m, doub
   check_disk(positions_m, range_m);
   const Grid grid(positions_m, range_m);
   for (std::size_t i = 0; i < positions_m.size(); ++i) {
-    const auto& p = positions_m[i];
     grid.around(i, [&](AgentId other) {
       const auto j = static_cast<std::size_t>(other);
       if (j == i) return;
-      const auto& q = positions_m[j];
-      const double dx = q[0] - p[0], dy = q[1] - p[1], dz = q[2] - p[2];
-      if (dx * dx + dy * dy + dz * dz <= range_m * range_m) lists[i].push_back(other);
+      const double d2_m2 = squared_distance_m2(positions_m[i], positions_m[j]);
+      if (d2_m2 <= range_m * range_m) lists[i].push_back(other);
     });
   }
-  return Topology(std::move(lists));
+  Topology topology(std::move(lists));
+  topology.placed_ = true;
+  topology.length_m_.reserve(topology.links());
+  for (AgentId a = 0; a < topology.agents(); ++a) {
+    const Position& p = positions_m[static_cast<std::size_t>(a)];
+    for (const AgentId b : topology.neighbours(a)) {
+      const Position& q = positions_m[static_cast<std::size_t>(b)];
+      topology.length_m_.push_back(std::sqrt(squared_distance_m2(p, q)));
+    }
+  }
+  return topology;
 }
 
 std::int64_t Topology::link(AgentId from, AgentId to) const {

@@ -47,6 +47,10 @@ class Topology {
   std::size_t first_link(AgentId from) const { return first_[static_cast<std::size_t>(from)]; }
   /// Number of directed links: each edge is two.
   std::size_t links() const { return neighbour_.size(); }
+  /// True if it was built from positions, so that links have lengths.
+  bool has_lengths() const { return placed_; }
+  /// Distance between the ends of a link, 0 … links()−1, in m; 0 without positions.
+  double length_m(std::size_t link) const { return placed_ ? length_m_[link] : 0.0; }
   /// True if every two agents are joined by exactly one path.
   bool is_tree() const;
 
@@ -54,6 +58,8 @@ class Topology {
   explicit Topology(std::vector<std::vector<AgentId>> lists);
   std::vector<std::size_t> first_;  // row starts, n + 1 of them
   std::vector<AgentId> neighbour_;
+  bool placed_ = false;
+  std::vector<double> length_m_;  // a link, if placed
 };
 
 }  // namespace hearsay

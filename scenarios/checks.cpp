@@ -216,6 +216,11 @@ void Checker::check_radio() {
     fail(radio_["edges"], "only for topology = \"edges\"; found \"" + radio.topology + "\"");
   }
   resolve_edges();
+  if (radio.propagation_m_per_s && radio.topology != "disk") {
+    fail(radio_["propagation_m_per_s"],
+         "only for topology = \"disk\", which knows how long links are; found \"" + radio.topology +
+             "\"");
+  }
   if (radio.topology != "disk") return;
   if (radio.range_m <= 0.0) fail(radio_["topology"], "\"disk\" needs radio.range_m above 0");
   for (std::size_t i = 0; i < s_.agents.size(); ++i) {

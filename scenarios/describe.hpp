@@ -65,6 +65,8 @@ void describe(V& v, RadioSpec& s) {
   v.field("queue_packets_max", s.queue_packets_max, between(1, 1e6),
           "packets waiting or being sent at a transmitter");
   v.field("latency_s", s.latency_s, time_span(true), "from the last bit sent to arrival");
+  v.field("propagation_m_per_s", s.propagation_m_per_s, greater_than_zero(),
+          "for \"disk\": arrival is later by distance / speed; default: by nothing");
   v.table("loss", s.loss, "how packets get lost");
 }
 

@@ -1,6 +1,7 @@
 #include "scenarios/run.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "sim/kernel/error.hpp"
@@ -104,7 +105,9 @@ RadioOptions radio_options(const RadioSpec& spec) {
           .header_bytes = static_cast<std::uint32_t>(spec.header_bytes),
           .queue_packets_max = static_cast<std::uint32_t>(spec.queue_packets_max),
           .latency = Duration::seconds(spec.latency_s),
-          .loss_probability = spec.loss.model == "bernoulli" ? spec.loss.probability : 0.0};
+          .loss_probability = spec.loss.model == "bernoulli" ? spec.loss.probability : 0.0,
+          .propagation_m_per_s =
+              spec.propagation_m_per_s.value_or(std::numeric_limits<double>::infinity())};
 }
 
 TalkPhase talk_phase_of(const std::string& name) {

@@ -41,6 +41,8 @@ struct RadioSpec {
   int header_bytes = 0;                   ///< 0 … 65535
   int queue_packets_max = 64;             ///< 1 … 1e6
   double latency_s = 0.0;                 ///< ≥ 0
+  /// > 0, for "disk": the way to a hearer takes distance / speed; none: no time
+  std::optional<double> propagation_m_per_s;
   LossSpec loss;
 };
 

@@ -19,6 +19,20 @@ constexpr int blocks_bits = 16;
 // Mean from which on a Poisson draw is by rejection.
 constexpr double poisson_inversion_below = 10.0;
 
+// A block of a stream: two words.
+[[gnu::always_inline]] inline Threefry::ctr_type block(std::uint64_t seed, std::uint64_t purpose,
+                                                       std::uint64_t number, std::uint64_t entity) {
+  const Threefry::ctr_type counter = {{number, entity}};
+  const Threefry::key_type key = {{seed, purpose}};
+  return Threefry()(counter, key);
+}
+
+double to_uniform(std::uint64_t bits) { return static_cast<double>(bits >> 11) * 0x1p-53; }
+
+void check_count(std::uint64_t count) {
+  require(count < (std::uint64_t{1} << 48), "a stream was asked for a count of 2^48 or more");
+}
+
 std::uint64_t poisson_by_inversion(double mean, double u) {
   double probability = math::exp(-mean);
   double below = probability;
@@ -41,8 +55,13 @@ Stream::Stream(std::uint64_t seed, Purpose purpose, Entity entity, std::uint64_t
     : key_{seed, purpose.hash()}, entity_(entity.key), block_(first_block) {}
 
 Stream Stream::at(std::uint64_t seed, Purpose purpose, Entity entity, std::uint64_t count) {
-  require(count < (std::uint64_t{1} << 48), "a stream was asked for a count of 2^48 or more");
+  check_count(count);
   return Stream(seed, purpose, entity, count << blocks_bits);
+}
+
+double Stream::uniform_at(std::uint64_t seed, Purpose purpose, Entity entity, std::uint64_t count) {
+  check_count(count);
+  return to_uniform(block(seed, purpose.hash(), count << blocks_bits, entity.key)[0]);
 }
 
 std::uint64_t Stream::bits() {
@@ -50,15 +69,13 @@ std::uint64_t Stream::bits() {
     has_spare_bits_ = false;
     return spare_bits_;
   }
-  const Threefry::ctr_type counter = {{block_++, entity_}};
-  const Threefry::key_type key = {{key_[0], key_[1]}};
-  const Threefry::ctr_type words = Threefry()(counter, key);
+  const Threefry::ctr_type words = block(key_[0], key_[1], block_++, entity_);
   spare_bits_ = words[1];
   has_spare_bits_ = true;
   return words[0];
 }
 
-double Stream::uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
+double Stream::uniform() { return to_uniform(bits()); }
 
 double Stream::uniform(double low, double high) {
   const double width = high - low;

@@ -58,6 +58,9 @@ class Stream {
   /// `count` < 2^48 (else BrokenInvariant).
   static Stream at(std::uint64_t seed, Purpose purpose, Entity entity, std::uint64_t count);
 
+  /// at(seed, purpose, entity, count).uniform(): the cheapest way to a single draw.
+  static double uniform_at(std::uint64_t seed, Purpose purpose, Entity entity, std::uint64_t count);
+
   /// 64 random bits.
   std::uint64_t bits();
   /// Uniform on [0, 1), a multiple of 2^-53.

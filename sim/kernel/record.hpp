@@ -111,13 +111,12 @@ class Record {
   struct Canon {
     DigestSink* sink = nullptr;
     std::vector<std::byte> buffer;  // empty without a sink
-    std::size_t used = 0;
-    void row(char kind);
-    void u64(std::uint64_t value);
-    void i64(std::int64_t value) { u64(static_cast<std::uint64_t>(value)); }
-    void f64(double value);
+    std::size_t used = 0;           // less than a piece, between rows
+    /// The beginning of a row; numbers go straight to their place.
+    template <class... Numbers>
+    void row(char kind, Numbers... numbers);
     void text(std::string_view value);
-    void bytes(std::span<const std::byte> value);
+    void pass_on();
     void flush();
   };
   Canon& canon(Origin origin) { return origin == Origin::run ? run_canon_ : ledger_canon_; }

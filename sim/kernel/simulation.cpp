@@ -1,5 +1,6 @@
 #include "sim/kernel/simulation.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "sim/kernel/error.hpp"
@@ -51,6 +52,28 @@ Time Simulation::after(Duration span) const {
   return span >= Time::never() - now_ ? Time::never() : now_ + span;
 }
 
+bool Simulation::go_on(Time time, Phase phase) {
+  require(happening_, "what is not happening cannot go on");
+  require(time >= now_, "an event was to go on in the past");
+  if (failed_ || time > options_.end || time == Time::never()) return false;
+  if (end_.events == options_.events_max) return false;
+  if (time >= quiet_until_) {
+    quiet_until_ = queue_.empty() ? Time::never() : queue_.next_time();
+    if (time >= quiet_until_) return false;
+  }
+  // Behind samples no more may happen at their instant: schedule() will say so.
+  if (observing_ && time == now_) return false;
+  begin_event(time, phase);
+  return true;
+}
+
+void Simulation::begin_event(Time time, Phase phase) {
+  now_ = time;
+  observing_ = phase == Phase::observe;
+  acting_ = no_agent;
+  ++end_.events;
+}
+
 std::string Simulation::who(AgentId agent) const {
   if (agent == no_agent) return "the run";
   const std::string name = name_of_agent ? name_of_agent(agent) : std::string();
@@ -85,15 +108,14 @@ RunEnd Simulation::run() {
       break;
     }
     EventQueue::Event event = queue_.pop();
-    now_ = event.time;
-    observing_ = event.phase == Phase::observe;
-    acting_ = no_agent;
-    ++end_.events;
+    begin_event(event.time, event.phase);
+    happening_ = true;
     try {
       event.callback();
     } catch (...) {
       fail(acting_, std::current_exception());
     }
+    happening_ = false;
   }
   observing_ = false;
   acting_ = no_agent;

@@ -10,6 +10,7 @@
 // outlive it.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <exception>
 #include <functional>
@@ -72,9 +73,19 @@ class Simulation {
   EventId schedule(Time time, Phase phase, Function&& callback) {
     require(time >= now_, "an event was scheduled in the past");
     require(!observing_ || time > now_, "a callback that takes samples scheduled an event at once");
+    quiet_until_ = std::min(quiet_until_, time);
     return queue_.push(time, phase, std::forward<Function>(callback));
   }
   bool cancel(EventId id) { return queue_.cancel(id); }
+
+  /// For an event with several instants, such as a packet on its way from hearer to hearer. The
+  /// event that is happening goes on at `time` without a way through the queue, if nothing else is
+  /// due before or at that instant and the run may still have an event there: then the clock stands
+  /// at `time`, one more event has begun, and nobody acts. Else nothing changes, and the rest of
+  /// the event is to be scheduled. Both ways give the same run.
+  /// @return whether the clock stands at `time`.
+  /// @throws BrokenInvariant if no event is happening, or `time` is before now().
+  bool go_on(Time time, Phase phase);
 
   /// From now on failures are charged to `agent`. Callbacks that act for an agent set it first;
   /// it is reset to no_agent before each event.
@@ -103,6 +114,7 @@ class Simulation {
 
  private:
   std::string who(AgentId agent) const;
+  void begin_event(Time time, Phase phase);
 
   Options options_;
   Time now_;
@@ -110,6 +122,8 @@ class Simulation {
   Record record_;
   AgentId acting_ = no_agent;
   bool started_ = false;
+  bool happening_ = false;  // an event is
+  Time quiet_until_;        // nothing is due before, as far as go_on() has looked
   bool observing_ = false;
   bool failed_ = false;
   RunEnd end_;

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <set>
 #include <string>
@@ -215,6 +216,27 @@ TEST(Topology, ADiskIsRightWhereTheRangeIsTinyInAHugeWorld) {
 TEST(Topology, ADiskOfCoincidentAgentsIsFull) {
   const std::vector<Position> positions(5, Position{3.0, -4.0, 5.0});
   EXPECT_EQ(links_of(Topology::disk(positions, 1e-9)), links_of(Topology::full(5)));
+}
+
+TEST(Topology, ALinkOfADiskIsAsLongAsTheWay) {
+  const std::vector<Position> positions{{1, 1, 0}, {4, 5, 0}, {1, 1, 2}, {1, 14, 0}};
+  const Topology disk = Topology::disk(positions, 13.0);
+  const auto length_m = [&](AgentId from, AgentId to) {
+    return disk.length_m(static_cast<std::size_t>(disk.link(from, to)));
+  };
+  EXPECT_TRUE(disk.has_lengths());
+  EXPECT_EQ(length_m(0, 1), 5.0);
+  EXPECT_EQ(length_m(1, 0), 5.0);
+  EXPECT_EQ(length_m(2, 0), 2.0);
+  EXPECT_EQ(length_m(3, 0), 13.0);
+  EXPECT_EQ(length_m(1, 2), std::sqrt(29.0));
+  EXPECT_EQ(disk.link(2, 3), -1);
+}
+
+TEST(Topology, WithoutPositionsLinksHaveNoLength) {
+  const Topology ring = Topology::ring(3);
+  EXPECT_FALSE(ring.has_lengths());
+  EXPECT_EQ(ring.length_m(5), 0.0);
 }
 
 }  // namespace

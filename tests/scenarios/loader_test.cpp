@@ -290,6 +290,24 @@ TEST_F(Loader, ADiskNeedsARangeAndPlaces) {
             "or circle");
 }
 
+TEST_F(Loader, APropagationNeedsASpeedAndADisk) {
+  const auto with = [](const std::string& value) {
+    return error_with("\"ring\"", "\"ring\"\npropagation_m_per_s = " + value);
+  };
+  EXPECT_EQ(with("3e8"),
+            "s.toml:9: radio.propagation_m_per_s: only for topology = \"disk\", which knows how "
+            "long links are; found \"ring\"");
+  EXPECT_EQ(with("0"), "s.toml:9: radio.propagation_m_per_s = 0: must be greater than 0");
+  EXPECT_EQ(with("-3e8"), "s.toml:9: radio.propagation_m_per_s = -3e+08: must be greater than 0");
+  EXPECT_EQ(with("inf"), "s.toml:9: radio.propagation_m_per_s = inf: must be a finite number");
+  EXPECT_EQ(with("\"light\""),
+            "s.toml:9: radio.propagation_m_per_s = \"light\": expected a number, found a string");
+  const std::string disk = "duration_s = 1\n[radio]\ntopology = \"disk\"\nrange_m = 9\n";
+  const std::string agents = "[[agents]]\ncount = 3\ncircle.radius_m = 2\n";
+  EXPECT_EQ(load(disk + "propagation_m_per_s = 343\n" + agents).radio.propagation_m_per_s, 343.0);
+  EXPECT_EQ(load(disk + agents).radio.propagation_m_per_s, std::nullopt);
+}
+
 TEST_F(Loader, APositionSensorNeedsOneKindOfNoise) {
   EXPECT_EQ(error_with(", sigma_m = 5.0", ""),
             "s.toml:14: agents[0].sensor: kind \"position\" needs sigma_m, or sigma_along_m and "

@@ -1,9 +1,11 @@
 // Beacons: n radios, about ten in range of each, broadcast 200 bytes every second at a phase of
-// their own over 1 Mbit/s with 10 % loss, for 60 s. An item is a packet at one hearer, lost or not.
+// their own over 1 Mbit/s with 10 % loss and the delay of light, for 60 s. An item is a packet at
+// one hearer, lost or not.
 //
-// The floor does the same with plain arrays: neighbours in compressed rows, one entry of a
-// std::priority_queue a beacon and a delivery, the same keyed draws; it records nothing. Ours is
-// Radio with a heap event a packet, every fate counted and fed to the digest.
+// The floor does the same with plain arrays: neighbours and their delays in compressed rows, one
+// entry of a std::priority_queue a beacon and a delivery, the same keyed draws; it records nothing.
+// Ours is Radio, every fate counted and fed to the digest. What it, the simulation and the topology
+// hold of the heap half-way through is given an agent, and must not be more than 1 kB.
 
 #include <benchmark/benchmark.h>
 
@@ -11,7 +13,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <memory>
 #include <queue>
 #include <string>
 #include <utility>
@@ -21,6 +22,7 @@
 #include "sim/kernel/random.hpp"
 #include "sim/kernel/simulation.hpp"
 #include "sim/record/digest.hpp"
+#include "tools/bench/memory.hpp"
 
 namespace hearsay {
 namespace {
@@ -28,15 +30,18 @@ namespace {
 constexpr std::uint64_t seed = 1;
 constexpr double range_m = 100.0;
 constexpr double neighbours_mean = 10.0;
+constexpr double light_m_per_s = 299'792'458.0;
 constexpr double rate_bps = 1e6;
 constexpr double loss_probability = 0.1;
 constexpr std::size_t beacon_bytes = 200;
 constexpr Duration period = 1_s;
 constexpr Time end = Time::at(60_s);
+constexpr double bytes_per_agent_max = 1024.0;
 
 struct Layout {
   Topology topology;
   std::vector<Duration> phase;
+  std::vector<std::int64_t> delay_ns;  // a link
 };
 
 Layout make_layout(int agents) {
@@ -52,7 +57,12 @@ Layout make_layout(int agents) {
     const auto period_ns = static_cast<std::uint64_t>(period.nanoseconds());
     phase.push_back(Duration::nanoseconds(static_cast<std::int64_t>(place.below(period_ns))));
   }
-  return {Topology::disk(positions_m, range_m), std::move(phase)};
+  Layout layout{Topology::disk(positions_m, range_m), std::move(phase), {}};
+  for (std::size_t link = 0; link < layout.topology.links(); ++link) {
+    const double delay_s = layout.topology.length_m(link) / light_m_per_s;
+    layout.delay_ns.push_back(Duration::seconds(delay_s).nanoseconds());
+  }
+  return layout;
 }
 
 struct Tally {
@@ -61,8 +71,12 @@ struct Tally {
   std::uint64_t in_flight = 0;
   bool operator==(const Tally&) const = default;
 };
+struct Outcome {
+  Tally tally;
+  double bytes_per_agent = 0.0;
+};
 
-Tally run_floor(const Layout& layout) {
+Outcome run_floor(const Layout& layout) {
   struct Entry {
     std::int64_t time_ns;
     std::uint64_t sequence;
@@ -89,21 +103,23 @@ Tally run_floor(const Layout& layout) {
     if (entry.receiver == no_agent) {
       std::int64_t& free_ns = free_at_ns[static_cast<std::size_t>(entry.sender)];
       free_ns = std::max(free_ns, entry.time_ns) + air_ns;
+      std::size_t link = layout.topology.first_link(entry.sender);
       for (const AgentId hearer : layout.topology.neighbours(entry.sender)) {
-        queue.push({free_ns, sequence++, entry.tick, entry.sender, hearer});
+        const std::int64_t time_ns = free_ns + layout.delay_ns[link++];
+        queue.push({time_ns, sequence++, entry.tick, entry.sender, hearer});
       }
       queue.push({entry.time_ns + period.nanoseconds(), sequence++, entry.tick + 1, entry.sender,
                   no_agent});
-    } else if (Stream::at(seed, Purpose("loss of a tick"),
-                          Entity::link(entry.sender, entry.receiver), entry.tick)
-                   .bernoulli(loss_probability)) {
+    } else if (Stream::uniform_at(seed, Purpose("loss of a tick"),
+                                  Entity::link(entry.sender, entry.receiver),
+                                  entry.tick) < loss_probability) {
       ++tally.lost;
     } else {
       ++tally.heard;
     }
   }
   for (; !queue.empty(); queue.pop()) tally.in_flight += queue.top().receiver != no_agent;
-  return tally;
+  return {tally};
 }
 
 class Beacon final : public Receiver {
@@ -127,41 +143,54 @@ class Beacon final : public Receiver {
   std::uint64_t tick_ = 0;
 };
 
-Tally run_ours(const Layout& layout) {
+Outcome run_ours(const Layout& layout) {
+  const int agents = layout.topology.agents();
+  std::vector<Beacon> beacons;
+  beacons.reserve(static_cast<std::size_t>(agents));  // each stays where it is
   Xxh3Digest digest;
+  const std::size_t bytes_before = bench::bytes_held();
+  std::size_t bytes = 0;
   Simulation simulation({.seed = seed, .end = end, .record = {.digest = &digest}});
   Radio radio(simulation, layout.topology,
-              {.rate_bps = rate_bps, .loss_probability = loss_probability});
-  std::vector<std::unique_ptr<Beacon>> beacons;
-  for (AgentId a = 0; a < layout.topology.agents(); ++a) {
-    beacons.push_back(std::make_unique<Beacon>(simulation, radio, a));
+              {.rate_bps = rate_bps,
+               .loss_probability = loss_probability,
+               .propagation_m_per_s = light_m_per_s});
+  for (AgentId a = 0; a < agents; ++a) {
+    beacons.emplace_back(simulation, radio, a);
     simulation.schedule(Time::at(layout.phase[static_cast<std::size_t>(a)]), Phase::act,
-                        [beacon = beacons.back().get()] { beacon->talk(); });
+                        [beacon = &beacons.back()] { beacon->talk(); });
   }
+  simulation.schedule(Time::at(end.since_start() / 2), Phase::observe,
+                      [&bytes, bytes_before] { bytes = bench::bytes_held() - bytes_before; });
   simulation.run();
   radio.finish();
   simulation.record().finish();
   benchmark::DoNotOptimize(digest.hex());
   Tally tally;
-  for (const auto& beacon : beacons) tally.heard += beacon->heard;
-  for (AgentId a = 0; a < layout.topology.agents(); ++a) {
+  for (const Beacon& beacon : beacons) tally.heard += beacon.heard;
+  for (AgentId a = 0; a < agents; ++a) {
     const auto& fates = radio.counts(a).fates;
     tally.lost += fates[static_cast<std::size_t>(Fate::lost)];
     tally.in_flight += fates[static_cast<std::size_t>(Fate::in_flight_at_end)];
   }
-  return tally;
+  return {tally, static_cast<double>(bytes) / agents};
 }
 
-template <Tally (*run)(const Layout&)>
+template <Outcome (*run)(const Layout&)>
 void beacon(benchmark::State& state, int agents) {
   const Layout layout = make_layout(agents);
-  Tally tally;
+  Outcome outcome;
   for (auto _ : state) {
-    tally = run(layout);
-    benchmark::DoNotOptimize(tally);
+    outcome = run(layout);
+    benchmark::DoNotOptimize(outcome);
   }
+  const Tally& tally = outcome.tally;
   // A rate is worth something only if both do the same work.
-  if (tally != run_floor(layout)) state.SkipWithError("fates differ from the floor's");
+  if (tally != run_floor(layout).tally) state.SkipWithError("fates differ from the floor's");
+  if (outcome.bytes_per_agent > bytes_per_agent_max) {
+    state.SkipWithError("more than 1024 bytes an agent");
+  }
+  if (outcome.bytes_per_agent > 0.0) state.counters["bytes_per_agent"] = outcome.bytes_per_agent;
   const auto deliveries = static_cast<double>(tally.heard + tally.lost);
   state.counters["deliveries"] = deliveries;
   state.counters["deliveries_per_s"] = benchmark::Counter(

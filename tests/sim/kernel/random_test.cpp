@@ -66,6 +66,8 @@ TEST(Stream, AtACountIsThreefryFromThatCountsFirstBlock) {
   const Entity entity = Entity::sensor(3, 1);
   for (const std::uint64_t count :
        {std::uint64_t{0}, std::uint64_t{1}, std::uint64_t{123'456}, (std::uint64_t{1} << 48) - 1}) {
+    EXPECT_EQ(Stream::uniform_at(9, purpose, entity, count),
+              Stream::at(9, purpose, entity, count).uniform());
     Stream stream = Stream::at(9, purpose, entity, count);
     for (std::uint64_t block = 0; block < 3; ++block) {
       const Words words = threefry13({(count << 16) + block, entity.key}, {9, purpose.hash()});
@@ -74,6 +76,8 @@ TEST(Stream, AtACountIsThreefryFromThatCountsFirstBlock) {
     }
   }
   EXPECT_THROW((void)Stream::at(9, purpose, entity, std::uint64_t{1} << 48), BrokenInvariant);
+  EXPECT_THROW((void)Stream::uniform_at(9, purpose, entity, std::uint64_t{1} << 48),
+               BrokenInvariant);
 }
 
 TEST(Purpose, IsFnv1aOfItsName) {

@@ -227,6 +227,40 @@ TEST(Record, ManyRowsReachTheDigestInPiecesWithoutLoss) {
   }
 }
 
+TEST(Record, RowsOfAllSizesCrossTheEndsOfPiecesUnchanged) {
+  // The bytes as the header says them, one at a time.
+  std::vector<std::byte> expected;
+  const auto number = [&](std::uint64_t value) {
+    for (int i = 0; i < 8; ++i) expected.push_back(static_cast<std::byte>(value >> (8 * i) & 0xff));
+  };
+  const auto text = [&](const std::string& value) {
+    number(value.size());
+    for (const char c : value) expected.push_back(static_cast<std::byte>(c));
+  };
+  constexpr std::uint64_t hash_of_a = 0xaf63dc4c8601ec8c;
+  Bytes bytes;
+  Record record({.digest = &bytes});
+  const NameId a = record.name("a");
+  for (int n = 0; n < 2000; ++n) {
+    const auto u = static_cast<std::uint64_t>(n);
+    record.message({Time::at(1_s * n), Time::at(1_s * n + 1_ns), n, -n, a, 7, a});
+    expected.push_back(std::byte{'M'});
+    for (const std::uint64_t value : {u * 1'000'000'000, u * 1'000'000'000 + 1, u, 0 - u, hash_of_a,
+                                      std::uint64_t{7}, hash_of_a}) {
+      number(value);
+    }
+    if (n % 3 != 0) continue;
+    const std::string detail(static_cast<std::size_t>(n) % 97 * 67, 'x');
+    record.event(Time::at(1_ns), n, "a", detail);
+    expected.push_back(std::byte{'E'});
+    for (const std::uint64_t value : {std::uint64_t{1}, u, hash_of_a}) number(value);
+    text(detail);
+  }
+  record.finish();
+  EXPECT_EQ(bytes.all, expected);
+  EXPECT_EQ(bytes.largest, 4096u);
+}
+
 TEST(Record, TakesNothingAfterItIsFinished) {
   Record record({});
   const NameId name = record.name("x");

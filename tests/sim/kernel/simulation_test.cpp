@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -212,6 +213,108 @@ TEST(Simulation, KnowsTheInstantAfterASpan) {
     EXPECT_EQ(simulation.after(Duration::nanoseconds(INT64_MAX)), Time::never());
   });
   EXPECT_TRUE(simulation.run().ok());
+}
+
+// A walk of 40 steps of 1 … 4 ms, among other events on whole milliseconds. With `inline_too` it
+// goes on by itself where it may.
+std::vector<std::string> walk(bool inline_too, const Simulation::Options& options, RunEnd* end) {
+  Simulation simulation(options);
+  std::vector<std::string> seen;
+  const auto note = [&](const std::string& what) {
+    seen.push_back(std::to_string(simulation.now().nanoseconds() / 1'000'000) + " " + what);
+  };
+  struct Walk {
+    Simulation& simulation;
+    bool inline_too;
+    std::function<void(int)> step;
+    int steps = 0;
+    void go() {
+      for (;;) {
+        step(++steps);
+        if (steps == 40) return;
+        const Time next = simulation.now() + 1_ms * (1 + steps * 7 % 4);
+        if (inline_too && simulation.go_on(next, Phase::update)) continue;
+        simulation.schedule(next, Phase::update, [this] { go(); });
+        return;
+      }
+    }
+  };
+  Walk one{simulation, inline_too, [&](int n) {
+             note("step " + std::to_string(n));
+             if (n % 5 != 0) return;
+             const Time later = simulation.now() + 1_ms * (n % 3);
+             for (const Phase phase : {Phase::act, Phase::update}) {
+               simulation.schedule(later, phase, [&] { note("reaction"); });
+             }
+           }};
+  Walk other{simulation, inline_too, [&](int n) { note("other " + std::to_string(n)); }};
+  simulation.schedule(Time::at(3_ms), Phase::update, [&] { one.go(); });
+  simulation.schedule(Time::at(50_ms), Phase::update, [&] { other.go(); });
+  for (int ms = 0; ms < 150; ms += 7) {
+    simulation.schedule(Time::at(1_ms * ms), static_cast<Phase>(ms % 5), [&] { note("else"); });
+  }
+  const EventId cancelled = simulation.schedule(Time::at(30_ms), Phase::act, [] { FAIL(); });
+  simulation.cancel(cancelled);
+  *end = simulation.run();
+  return seen;
+}
+
+TEST(Simulation, WhatGoesOnByItselfLeavesTheSameRunAsWhatIsScheduled) {
+  std::vector<Simulation::Options> all;
+  for (std::uint64_t events = 0; events < 150; ++events) all.push_back({.events_max = events});
+  for (int ms = 0; ms < 160; ++ms) all.push_back({.end = Time::at(1_ms * ms)});
+  all.push_back({});
+  for (const Simulation::Options& options : all) {
+    RunEnd by_itself, scheduled;
+    EXPECT_EQ(walk(true, options, &by_itself), walk(false, options, &scheduled));
+    EXPECT_EQ(by_itself.events, scheduled.events);
+    EXPECT_EQ(by_itself.at, scheduled.at);
+    EXPECT_EQ(by_itself.reason, scheduled.reason);
+  }
+}
+
+TEST(Simulation, AnEventGoesOnOnlyWhereNothingElseIsDue) {
+  Simulation simulation({.end = Time::at(10_s)});
+  simulation.schedule(Time::at(5_s), Phase::observe, [] {});
+  simulation.schedule(Time::at(1_s), Phase::act, [&] {
+    EXPECT_FALSE(simulation.go_on(Time::at(5_s), Phase::world)) << "a tie is the queue's";
+    EXPECT_FALSE(simulation.go_on(Time::at(6_s), Phase::world));
+    EXPECT_EQ(simulation.now(), Time::at(1_s));
+    EXPECT_TRUE(simulation.go_on(Time::at(5_s) - 1_ns, Phase::world));
+    EXPECT_EQ(simulation.now(), Time::at(5_s) - 1_ns);
+    EXPECT_TRUE(simulation.go_on(simulation.now(), Phase::world)) << "at once";
+    EXPECT_THROW((void)simulation.go_on(Time::at(1_s), Phase::act), BrokenInvariant);
+  });
+  simulation.schedule(Time::at(7_s), Phase::act, [&] {
+    EXPECT_FALSE(simulation.go_on(Time::at(10_s) + 1_ns, Phase::act)) << "behind the end";
+    EXPECT_TRUE(simulation.go_on(Time::at(10_s), Phase::observe));
+    EXPECT_FALSE(simulation.go_on(Time::at(10_s), Phase::observe)) << "samples come last";
+  });
+  EXPECT_THROW((void)simulation.go_on(Time::at(1_s), Phase::act), BrokenInvariant);
+  const RunEnd end = simulation.run();
+  EXPECT_TRUE(end.ok()) << end.message;
+  EXPECT_EQ(end.events, 6u);
+  EXPECT_THROW((void)simulation.go_on(Time::never(), Phase::act), BrokenInvariant);
+}
+
+TEST(Simulation, NothingGoesOnAfterAFailureOrAtNever) {
+  Simulation simulation({});
+  simulation.schedule(Time::at(1_s), Phase::act, [&] {
+    EXPECT_FALSE(simulation.go_on(Time::never(), Phase::act));
+    simulation.fail(4, std::make_exception_ptr(std::runtime_error("x")));
+    EXPECT_FALSE(simulation.go_on(Time::at(2_s), Phase::act));
+  });
+  EXPECT_EQ(simulation.run().at, Time::at(1_s));
+}
+
+TEST(Simulation, WhereAnEventGoesOnNobodyActsAtFirst) {
+  Simulation simulation({});
+  simulation.schedule(Time::at(1_s), Phase::act, [&] {
+    simulation.acting_for(2);
+    EXPECT_TRUE(simulation.go_on(Time::at(2_s), Phase::act));
+    throw std::runtime_error("x");
+  });
+  EXPECT_EQ(simulation.run().message, "the run failed at 2.000000000 s: x");
 }
 
 TEST(Simulation, EndReasonsHaveNames) {

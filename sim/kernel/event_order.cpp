@@ -12,6 +12,7 @@ constexpr std::size_t keys_a_bucket = 4;
 constexpr std::size_t rank_max = 16;          // keys: more are sorted by comparing and moving
 constexpr std::size_t sort_whole_below = 48;  // keys: a window is not worth its while
 constexpr std::size_t samples = 32;
+constexpr std::size_t room_min = 64;
 constexpr std::size_t late_min = 64;   // keys: before that, `late` is cheap however it came about
 constexpr std::size_t late_share = 4;  // `late` holds at most one key in four
 
@@ -50,6 +51,14 @@ std::int64_t median_time_ns(const std::vector<EventKey>& keys) {
 }
 
 }  // namespace
+
+// Room for what few events need at most, so that a new record of crowding, rare as it may be, does
+// not allocate in the middle of a run.
+EventOrder::EventOrder() {
+  sorted_.reserve(room_min);
+  late_.reserve(room_min);
+  top_.reserve(room_min);
+}
 
 EventKey EventOrder::pop_late() {
   const EventKey first = late_.front();

@@ -57,6 +57,8 @@ struct EventKey {
 
 class EventOrder {
  public:
+  EventOrder();
+
   /// Number of keys.
   std::size_t size() const { return size_; }
 

@@ -1,10 +1,25 @@
 #!/usr/bin/env python3
-"""Google Benchmark's JSON files as one table: a row a workload, ours beside its floor."""
+"""Google Benchmark's JSON files as one table: a row a workload, ours beside its floor and the goal."""
 import json
 import platform
 import statistics
 import subprocess
 import sys
+
+# Ratio to the floor that a workload must reach; None: kept for comparison.
+GOALS = {
+    "hold/1000": 1.2, "hold/100000": 1.0, "hold/1000000": 1.5,
+    "whole_seconds/1000": None, "whole_seconds/100000": 0.9, "whole_seconds/1000000": None,
+    "timeouts/1000": None, "timeouts/100000": 0.35, "timeouts/1000000": None,
+    "bimodal/1000": None, "bimodal/100000": None, "bimodal/1000000": None,
+    "process/10000": 1.2,
+    "beacon/100": 1.2, "beacon/1000": 1.2, "beacon/10000": 1.2,
+    "fuse/4": 3.0,
+    "log": 1.0,
+}
+# Measured against another workload's floor: what a time-out an event costs beside none at all.
+FLOOR_OF = {"timeouts": "hold"}
+RATES = ("items_per_second", "deliveries_per_s", "rows/s")
 
 
 def processor():
@@ -15,45 +30,60 @@ def processor():
     return platform.machine()
 
 
-def rate(benchmark):
-    """Things a second, from the counter that has a rate; None if there is none."""
-    for name in ("items_per_second", "deliveries_per_s", "rows/s"):
-        if name in benchmark:
-            return benchmark[name]
-    return None
+def workload_of(benchmark):
+    """("floor" or "ours", workload), without what Google Benchmark appends to a name."""
+    side, _, rest = benchmark["run_name"].partition("/")
+    parts = [p for p in rest.split("/") if p != "real_time" and not p.startswith("iterations:")]
+    return side, "/".join(parts[:2])
 
 
-def order(workload):
-    """By kind, then by size."""
-    kind, _, size = workload.partition("/")
-    kinds = ["hold", "whole_seconds", "timeouts", "process", "beacon", "log"]
-    return kinds.index(kind) if kind in kinds else len(kinds), int(size) if size.isdigit() else 0
+def collect(files):
+    """{workload: {side: [things a second]}} and {workload: {counter: value}} of ours."""
+    rates, counters = {}, {}
+    for file in files:
+        with open(file) as text:
+            for benchmark in json.load(text)["benchmarks"]:
+                rate = next((benchmark[name] for name in RATES if name in benchmark), None)
+                if benchmark.get("error_occurred"):
+                    sys.exit(f"{benchmark['run_name']}: {benchmark['error_message']}")
+                if benchmark.get("run_type") != "iteration" or rate is None:
+                    continue
+                side, workload = workload_of(benchmark)
+                rates.setdefault(workload, {}).setdefault(side, []).append(rate)
+                for name in ("bytes_per_process", "bytes_per_agent", "bytes/row"):
+                    if name in benchmark:
+                        counters.setdefault(workload, {})[name] = benchmark[name]
+    return rates, counters
 
 
 def main():
-    rates = {}
-    for file in sys.argv[1:]:
-        with open(file) as text:
-            for benchmark in json.load(text)["benchmarks"]:
-                value = rate(benchmark)
-                if benchmark.get("run_type") != "iteration" or value is None:
-                    continue
-                name = benchmark["run_name"].removesuffix("/real_time")
-                side, _, workload = name.partition("/")
-                rates.setdefault(workload, {}).setdefault(side, []).append(value)
+    rates, counters = collect(sys.argv[1:])
     compiler = subprocess.run(["g++", "--version"], capture_output=True, text=True).stdout.split("\n")[0]
     print("# Benchmarks\n")
     print(f"{processor()}, {compiler}, release build. Median of five interleaved repetitions, in millions "
-          "a second (events, wake-ups, deliveries, rows) of CPU time (log: of wall time); the ratio "
-          "is ours to a floor made of plain arrays in the same binary and run. Written by `tools/bench/run`.\n")
-    print("| workload | floor | ours | ratio |")
-    print("|---|---|---|---|")
-    for workload, sides in sorted(rates.items(), key=lambda item: order(item[0])):
-        ours = statistics.median(sides["ours"]) if "ours" in sides else None
-        floor = statistics.median(sides["floor"]) if "floor" in sides else None
-        show = lambda value: "" if value is None else f"{value / 1e6:.2f}"
-        ratio = f"{ours / floor:.2f}" if ours and floor else ""
-        print(f"| {workload} | {show(floor)} | {show(ours)} | {ratio} |")
+          "a second (events, wake-ups, deliveries, fusions, rows) of CPU time (log: of wall time). The "
+          "ratio is ours to a floor in the same binary and run: plain arrays and std::priority_queue, "
+          "dynamic-size Eigen (fuse), bare prepared inserts (log). Written by `tools/bench/run`.\n")
+    print("| workload | floor | ours | ratio | goal | |")
+    print("|---|---|---|---|---|---|")
+    for workload in GOALS:
+        if workload not in rates:
+            sys.exit(f"{workload} was not measured")
+        kind, _, size = workload.partition("/")
+        floor = statistics.median(rates["/".join(filter(None, (FLOOR_OF.get(kind, kind), size)))]["floor"])
+        ours = statistics.median(rates[workload]["ours"])
+        goal = "" if GOALS[workload] is None else f"{GOALS[workload]:.2f}"
+        notes = ", ".join(f"{value:.0f} {name.replace('_per_', ' a ').replace('/', ' a ')}"
+                          for name, value in counters.get(workload, {}).items())
+        print(f"| {workload} | {floor / 1e6:.2f} | {ours / 1e6:.2f} | {ours / floor:.2f} | {goal} | {notes} |")
+    missing = sorted(set(rates) - set(GOALS))
+    if missing:
+        sys.exit(f"no goal is known for {', '.join(missing)}")
+    print("\nworkloads: `hold` takes one of N pending events and schedules another an exponential time later; "
+          "`whole_seconds` rounds those times; `bimodal` mixes microseconds with minutes; `timeouts` also "
+          "schedules and takes back a time-out for each event, and is compared with the floor of plain "
+          "`hold`; `process` wakes sleeping coroutines; `beacon` is a broadcast a second of each of N "
+          "radios; `fuse` is covariance intersection with optimal ω in 4-D; `log` writes rows into SQLite.")
 
 
 if __name__ == "__main__":

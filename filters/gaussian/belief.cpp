@@ -21,9 +21,8 @@ struct Factor {
 
 std::optional<Factor> factor(const Matrix& omega) {
   const Scaled scaled = scale(omega);
-  const auto l = cholesky(scaled);
-  if (!l) return std::nullopt;
-  return Factor{*l, scaled.factor};
+  if (scaled.cholesky.size() == 0) return std::nullopt;
+  return Factor{scaled.cholesky, scaled.factor};
 }
 
 /// L⁻¹D·m: the whitened m, so that gram() of it is mᵀΩ⁻¹m.
@@ -51,7 +50,7 @@ std::optional<Vector> mean(const Factor& f, const Vector& xi) {
   Matrix x = whitened(f, xi);
   solve_lower_transposed(f.l, x);
   scale_rows(x, f.d);
-  if (!x.allFinite()) return std::nullopt;
+  if (!all_finite(x)) return std::nullopt;
   return Vector(x);
 }
 
@@ -128,28 +127,28 @@ Belief measurement_information(const Matrix& M, const Matrix& S, const Vector& z
 }
 
 Definiteness definiteness(const Belief& belief) {
-  if (!belief.xi.allFinite()) return Definiteness::overflow;
+  if (!all_finite(belief.xi)) return Definiteness::overflow;
   return scale(belief.omega).definiteness;
 }
 
 std::optional<Vector> state(const Belief& belief) {
-  if (!belief.xi.allFinite()) return std::nullopt;
+  if (!all_finite(belief.xi)) return std::nullopt;
   const Scaled scaled = scale(belief.omega);
   if (!scaled.invertible()) return std::nullopt;
   Matrix x = belief.xi;
   scale_rows(x, scaled.factor);
   x = solve(scaled, x);
   scale_rows(x, scaled.factor);
-  if (!x.allFinite()) return std::nullopt;
+  if (!all_finite(x)) return std::nullopt;
   return Vector(x);
 }
 
 std::optional<Matrix> covariance(const Belief& belief) {
-  if (!belief.xi.allFinite()) return std::nullopt;
+  if (!all_finite(belief.xi)) return std::nullopt;
   const auto f = factor(belief.omega);
   if (!f) return std::nullopt;
   const Matrix sigma = gram(whitened(*f, Matrix::Identity(f->l.rows(), f->l.cols())));
-  if (!sigma.allFinite()) return std::nullopt;
+  if (!all_finite(sigma)) return std::nullopt;
   return sigma;
 }
 
@@ -160,7 +159,7 @@ std::optional<double> log_determinant(const Matrix& omega) {
 }
 
 std::optional<double> entropy_nats(const Belief& belief) {
-  if (!belief.xi.allFinite()) return std::nullopt;
+  if (!all_finite(belief.xi)) return std::nullopt;
   const auto log_det = log_determinant(belief.omega);
   if (!log_det) return std::nullopt;
   return 0.5 * (belief.dimension() * log_2_pi_e - *log_det);
@@ -168,7 +167,7 @@ std::optional<double> entropy_nats(const Belief& belief) {
 
 std::optional<double> kl_divergence_nats(const Belief& p, const Belief& q) {
   require(p.dimension() == q.dimension(), "kl_divergence_nats: dimensions differ");
-  if (!p.xi.allFinite() || !q.xi.allFinite()) return std::nullopt;
+  if (!all_finite(p.xi) || !all_finite(q.xi)) return std::nullopt;
   const auto fp = factor(p.omega);
   const auto fq = factor(q.omega);
   if (!fp || !fq) return std::nullopt;

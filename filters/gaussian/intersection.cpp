@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "filters/gaussian/fusion.hpp"
+#include "filters/gaussian/regular_pair.hpp"
 #include "filters/gaussian/symmetric.hpp"
 #include "sim/kernel/error.hpp"
 
@@ -29,6 +30,10 @@ struct Pair {
   std::optional<Intersection> answer;
   Directions directions;
 };
+
+void require_equal_dimensions(const Matrix& a, const Matrix& b) {
+  require(a.rows() == b.rows() && a.rows() >= 1, "intersect: dimensions differ");
+}
 
 double largest(const Matrix& m) { return m.size() == 0 ? 0.0 : m.cwiseAbs().maxCoeff(); }
 
@@ -188,7 +193,6 @@ double zero_of(const SlopeAt& slope_at) {
 
 template <typename SlopeAt>
 Pair prepared(const Matrix& omega_a, const Matrix& omega_b, const SlopeAt& slope_at) {
-  require(omega_a.rows() == omega_b.rows() && omega_a.rows() >= 1, "intersect: dimensions differ");
   const Scaled a = scale(omega_a);
   const Scaled b = scale(omega_b);
   if (const auto answer = decided(a, b, omega_a, omega_b)) return {answer, {}};
@@ -207,6 +211,8 @@ Pair prepared(const Matrix& omega_a, const Matrix& omega_b, const SlopeAt& slope
 }  // namespace
 
 Intersection intersect_det(const Matrix& omega_a, const Matrix& omega_b) {
+  require_equal_dimensions(omega_a, omega_b);
+  if (const auto omega = omega_of_regular_pair(omega_a, omega_b)) return {*omega, nullptr};
   const Pair pair = prepared(omega_a, omega_b, determinant_slope);
   if (pair.answer) return *pair.answer;
   const Directions& d = pair.directions;
@@ -220,6 +226,7 @@ Intersection intersect_det(const Matrix& omega_a, const Matrix& omega_b) {
 }
 
 Intersection intersect_trace(const Matrix& omega_a, const Matrix& omega_b) {
+  require_equal_dimensions(omega_a, omega_b);
   const Pair pair = prepared(omega_a, omega_b, trace_slope);
   if (pair.answer) return *pair.answer;
   const Directions& d = pair.directions;

@@ -63,6 +63,38 @@ double quadratic(const Matrix& omega, const Vector& e) {
   return sum;
 }
 
+/// Ω⁻¹ξ of an equilibrated Ω.
+std::optional<Vector> state_of(const Scaled& scaled, const Vector& xi) {
+  if (!scaled.invertible()) return std::nullopt;
+  Matrix x = xi;
+  scale_rows(x, scaled.factor);
+  x = solve(scaled, x);
+  scale_rows(x, scaled.factor);
+  if (!all_finite(x)) return std::nullopt;
+  return Vector(x);
+}
+
+/// √(tr Ω⁻¹ / n) of an equilibrated Ω = D⁻¹LLᵀD⁻¹: the squares of all entries of L⁻¹D are added up.
+std::optional<double> claimed_sigma_of(const Scaled& scaled) {
+  const Matrix& l = scaled.cholesky;
+  const Eigen::Index n = l.rows();
+  if (n == 0) return std::nullopt;
+  double trace = 0.0;
+  for (Eigen::Index j = 0; j < n; ++j) {
+    double column[dimension_max];
+    double squares = 0.0;
+    for (Eigen::Index i = j; i < n; ++i) {
+      double x = i == j ? scaled.factor(j) : 0.0;
+      for (Eigen::Index k = j; k < i; ++k) x -= l(i, k) * column[k];
+      column[i] = x / l(i, i);
+      squares += column[i] * column[i];
+    }
+    trace += squares;
+  }
+  if (!std::isfinite(trace)) return std::nullopt;
+  return std::sqrt(trace / static_cast<double>(n));
+}
+
 std::optional<double> if_finite(double value) {
   if (!std::isfinite(value)) return std::nullopt;
   return value;
@@ -133,14 +165,7 @@ Definiteness definiteness(const Belief& belief) {
 
 std::optional<Vector> state(const Belief& belief) {
   if (!all_finite(belief.xi)) return std::nullopt;
-  const Scaled scaled = scale(belief.omega);
-  if (!scaled.invertible()) return std::nullopt;
-  Matrix x = belief.xi;
-  scale_rows(x, scaled.factor);
-  x = solve(scaled, x);
-  scale_rows(x, scaled.factor);
-  if (!all_finite(x)) return std::nullopt;
-  return Vector(x);
+  return state_of(scale(belief.omega), belief.xi);
 }
 
 std::optional<Matrix> covariance(const Belief& belief) {
@@ -188,7 +213,12 @@ std::optional<double> nees(const Belief& belief, const Vector& truth) {
   require(belief.dimension() == truth.size(), "nees: dimensions differ");
   const auto mu = state(belief);
   if (!mu) return std::nullopt;
-  return if_finite(quadratic(belief.omega, *mu - truth));
+  return nees_of_error(belief, *mu - truth);
+}
+
+std::optional<double> nees_of_error(const Belief& belief, const Vector& error) {
+  require(belief.dimension() == error.size(), "nees_of_error: dimensions differ");
+  return if_finite(quadratic(belief.omega, error));
 }
 
 std::optional<double> mahalanobis_squared(const Vector& e, const Matrix& P) {
@@ -201,9 +231,14 @@ std::optional<double> mahalanobis_squared(const Vector& e, const Matrix& P) {
 }
 
 std::optional<double> claimed_sigma(const Belief& belief) {
-  const auto sigma = covariance(belief);
-  if (!sigma) return std::nullopt;
-  return std::sqrt(sigma->trace() / belief.dimension());
+  if (!all_finite(belief.xi)) return std::nullopt;
+  return claimed_sigma_of(scale(belief.omega));
+}
+
+Assessment assess(const Belief& belief) {
+  if (!all_finite(belief.xi)) return {};
+  const Scaled scaled = scale(belief.omega);
+  return {scaled.definiteness, state_of(scaled, belief.xi), claimed_sigma_of(scaled)};
 }
 
 PositionMeasurement range_bearing_to_position(const Pose& pose, double range_m, double bearing_rad,

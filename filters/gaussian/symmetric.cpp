@@ -14,6 +14,8 @@ constexpr double singular_below = 1e-13;  // times n, of the largest eigenvalue
 
 /// e such that value lies in [½, 1)·2^e.
 int binary_exponent(double value) {
+  const int biased = static_cast<int>(std::bit_cast<std::uint64_t>(value) >> 52) & 0x7ff;
+  if (biased != 0 && biased != 0x7ff) return biased - 1022;  // a normal number, as nearly all are
   int e = 0;
   std::frexp(value, &e);
   return e;

@@ -62,9 +62,24 @@ std::optional<Intersection> decided(const Scaled& a, const Scaled& b, const Matr
 
 /// Wᵀ m W.
 Matrix congruence(const Matrix& m, const Matrix& w) {
-  const Matrix mw = m.lazyProduct(w);
-  Matrix out = w.transpose().lazyProduct(mw);
-  out = 0.5 * (out + Matrix(out.transpose()));
+  const Eigen::Index n = w.rows();
+  const Eigen::Index r = w.cols();
+  Matrix mw(n, r);
+  for (Eigen::Index j = 0; j < r; ++j) {
+    for (Eigen::Index i = 0; i < n; ++i) {
+      mw(i, j) = m(i, 0) * w(0, j);
+      for (Eigen::Index k = 1; k < n; ++k) mw(i, j) += m(i, k) * w(k, j);
+    }
+  }
+  const auto entry = [&](Eigen::Index i, Eigen::Index j) {
+    double sum = w(0, i) * mw(0, j);
+    for (Eigen::Index k = 1; k < n; ++k) sum += w(k, i) * mw(k, j);
+    return sum;
+  };
+  Matrix out(r, r);
+  for (Eigen::Index j = 0; j < r; ++j) {
+    for (Eigen::Index i = 0; i <= j; ++i) out(i, j) = out(j, i) = 0.5 * (entry(i, j) + entry(j, i));
+  }
   return out;
 }
 

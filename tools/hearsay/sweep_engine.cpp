@@ -54,24 +54,24 @@ class CellScenario {
   /// @throws InputError.
   std::shared_ptr<const PreparedScenario> get(const Catalog& catalog, LogCache& logs) {
     const std::scoped_lock lock(mutex_);
-    if (!prepared_) prepared_ = prepare(load(catalog), catalog, logs);
+    if (!prepared_) {
+      prepared_ = prepare(load_scenario(study_.scenario_file, cell_.set, known_names(catalog)),
+                          catalog, logs);
+      config_hash_ = scenario_hash(prepared_->scenario);
+    }
     return prepared_;
   }
   void release() {
     const std::scoped_lock lock(mutex_);
     prepared_.reset();
   }
-  std::string config_hash(const Catalog& catalog) {
+  /// After get().
+  std::string config_hash() {
     const std::scoped_lock lock(mutex_);
-    if (config_hash_.empty()) config_hash_ = scenario_hash(load(catalog));
     return config_hash_;
   }
 
  private:
-  Scenario load(const Catalog& catalog) const {
-    return load_scenario(study_.scenario_file, cell_.set, known_names(catalog));
-  }
-
   const Study& study_;
   Cell cell_;
   std::mutex mutex_;
@@ -170,8 +170,7 @@ nlohmann::ordered_json to_json(const Value& value) {
   return std::visit([](const auto& v) { return nlohmann::ordered_json(v); }, value);
 }
 
-RunRow row_of(const Job& job, const Study& study, const Catalog& catalog,
-              const FinishedRun& finished) {
+RunRow row_of(const Job& job, const Study& study, const FinishedRun& finished) {
   nlohmann::ordered_json parameters = nlohmann::ordered_json::object();
   RunRow row;
   for (const auto& [axis, label] : job.cell->cell().labels) {
@@ -187,7 +186,7 @@ RunRow row_of(const Job& job, const Study& study, const Catalog& catalog,
   row.ok = finished.end.ok();
   row.reason = how_it_ended(finished.end);
   row.digest = finished.digest;
-  row.config_hash = job.cell->config_hash(catalog);
+  row.config_hash = job.cell->config_hash();
   row.wall_s = finished.wall_s;
   row.events = finished.end.events;
   row.version = program_version();
@@ -195,7 +194,7 @@ RunRow row_of(const Job& job, const Study& study, const Catalog& catalog,
 }
 
 /// Which runs are still to be done. Refuses a database whose runs were made from other settings.
-std::vector<Job> open_jobs(const Study& study, const Catalog& catalog, const SweepOptions& options,
+std::vector<Job> open_jobs(const Study& study, const SweepOptions& options,
                            DatabaseWriter& database,
                            std::vector<std::unique_ptr<CellScenario>>& cells) {
   const std::set<std::int64_t> present = database.run_ids();
@@ -210,7 +209,7 @@ std::vector<Job> open_jobs(const Study& study, const Catalog& catalog, const Swe
       ++id;
       if (!keep.contains(id)) {
         jobs.push_back({id, cell.get(), r});
-      } else if (r == 1 && database.config_hash(id) != cell->config_hash(catalog)) {
+      } else if (r == 1 && database.config_hash(id) != cell->config_hash()) {
         throw InputError(options.database, 0,
                          "run " + std::to_string(id) + " of study '" + study.name +
                              "' was made from other settings than the study has now; give another "
@@ -259,7 +258,7 @@ SweepSummary sweep_study(const Study& study, const Catalog& catalog, const Sweep
                       config_of(study, cell_scenarios)});
   SweepSummary summary;
   summary.runs = static_cast<std::int64_t>(cell_scenarios.size()) * study.repetitions;
-  std::vector<Job> jobs = open_jobs(study, catalog, options, database, cell_scenarios);
+  std::vector<Job> jobs = open_jobs(study, options, database, cell_scenarios);
   database.commit();
   summary.present = summary.runs - static_cast<std::int64_t>(jobs.size());
 
@@ -277,8 +276,7 @@ SweepSummary sweep_study(const Study& study, const Catalog& catalog, const Sweep
     const Job* job = nullptr;
     while (auto outcome = conveyor.next(job, [] { return stop_requested != 0; })) {
       if (!outcome->input_error.empty()) throw InputError(outcome->input_error);
-      database.add(row_of(*job, study, catalog, outcome->finished),
-                   outcome->finished.run->record());
+      database.add(row_of(*job, study, outcome->finished), outcome->finished.run->record());
       ++summary.done;
       if (!outcome->finished.end.ok() && ++summary.failed == 1) {
         summary.first_failure = "run " + std::to_string(job->id) + " (" +

@@ -87,19 +87,25 @@ bool diagonal_factors(const Matrix& omega, Vector& factor) {
   return true;
 }
 
-Matrix equilibrated(const Matrix& omega, const Vector& factor) {
+/// Puts DΩD into `out`. @return whether all entries are below 2 in size (no NaN either).
+bool equilibrate(const Matrix& omega, const Vector& factor, Matrix& out) {
   const Eigen::Index n = omega.rows();
-  Matrix out(n, n);
+  out.resize(n, n);
+  bool small = true;
   for (Eigen::Index j = 0; j < n; ++j) {
-    for (Eigen::Index i = 0; i < n; ++i) out(i, j) = omega(i, j) * factor(i) * factor(j);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double entry = omega(i, j) * factor(i) * factor(j);
+      out(i, j) = entry;
+      small = small && std::fabs(entry) < 2.0;
+    }
   }
-  return out;
+  return small;
 }
 
 /// Puts the lower factor into `l`; false, `l` empty, unless all pivots are positive.
 bool factor_cholesky(const Matrix& matrix, Matrix& l) {
+  const Eigen::Index n = matrix.rows();
   l = matrix;
-  const Eigen::Index n = l.rows();
   for (Eigen::Index j = 0; j < n; ++j) {
     for (Eigen::Index k = 0; k < j; ++k) {
       for (Eigen::Index i = j; i < n; ++i) l(i, j) -= l(i, k) * l(j, k);
@@ -149,21 +155,19 @@ void judge(Scaled& scaled) {
 Scaled scale(const Matrix& omega) {
   Scaled scaled;
   if (omega.size() == 0) return scaled;
-  if (!all_finite(omega)) {
-    scaled.matrix = omega;
-    scaled.definiteness = Definiteness::overflow;
-    return scaled;
-  }
   scaled.factor.resize(omega.rows());
-  bool fair = diagonal_factors(omega, scaled.factor);
-  if (fair) {
-    scaled.matrix = equilibrated(omega, scaled.factor);
-    // |Ω(i, j)| ≤ √(Ω(i, i)·Ω(j, j)) < 2 in any semi-definite matrix.
-    fair = scaled.matrix.cwiseAbs().maxCoeff() < 2.0;
-  }
+  // |Ω(i, j)| ≤ √(Ω(i, i)·Ω(j, j)) < 2 in any semi-definite matrix.
+  const bool fair =
+      diagonal_factors(omega, scaled.factor) && equilibrate(omega, scaled.factor, scaled.matrix);
   if (!fair) {
+    if (!all_finite(omega)) {
+      scaled.matrix = omega;
+      scaled.factor.resize(0);
+      scaled.definiteness = Definiteness::overflow;
+      return scaled;
+    }
     scaled.factor.setConstant(std::ldexp(1.0, -(exponent_of(omega) / 2)));
-    scaled.matrix = equilibrated(omega, scaled.factor);
+    equilibrate(omega, scaled.factor, scaled.matrix);
   }
   judge(scaled);
   return scaled;

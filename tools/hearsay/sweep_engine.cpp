@@ -105,7 +105,9 @@ class Conveyor {
   void give(const Job* job, Outcome outcome) {
     const std::scoped_lock lock(mutex_);
     outcomes_.emplace(static_cast<std::size_t>(job - jobs_.data()), std::move(outcome));
-    news_.notify_one();
+    // Not for each: without an idle processor the writer would push a worker aside. (next() also
+    // looks by itself now and then.)
+    if (outcomes_.size() >= batch || taken_ == jobs_.size()) news_.notify_one();
   }
   /// The outcome of the next job in order, or nothing after the last. Wakes up now and then.
   std::optional<Outcome> next(const Job*& job, const std::function<bool()>& stop) {
@@ -136,6 +138,7 @@ class Conveyor {
     stopped_ = true;
     room_.notify_all();
   }
+  static constexpr std::size_t batch = 8;  // well below the window
   std::vector<Job> jobs_;
   std::size_t window_;
   std::mutex mutex_;

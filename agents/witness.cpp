@@ -66,7 +66,8 @@ void Witness::sample() {
   last_sample_ = simulation_.now();
   const int subjects = static_cast<int>(options_.subjects.size());
   for (int s = 0; s < subjects; ++s) {
-    keep(central_agent, s, measure(central_[static_cast<std::size_t>(s)], s, true));
+    const TrackedBelief& central = central_[static_cast<std::size_t>(s)];
+    keep(central_agent, s, measure(central, gaussian::assess(central.belief), s, true));
   }
   for (Watched& watched : watched_) {
     for (int s = 0; s < subjects; ++s) sample(watched, s);
@@ -74,15 +75,15 @@ void Witness::sample() {
 }
 
 void Witness::sample(Watched& watched, int subject) {
-  Values values = measure(watched.estimator->tracked(subject), subject, false);
+  const TrackedBelief& tracked = watched.estimator->tracked(subject);
+  const gaussian::Assessment assessment = gaussian::assess(tracked.belief);
+  Values values = measure(tracked, assessment, subject, false);
   ++watched.samples;
   if (at(values, Metric::not_positive) != 0.0) ++watched.not_positive;
   if (options_.ledger) {
     watched.reach_gap_max = std::max(watched.reach_gap_max, at(values, Metric::reach_gap));
   }
-  const gaussian::Belief& belief = watched.estimator->tracked(subject).belief;
-  if (!watched.overflow_told &&
-      gaussian::definiteness(belief) == gaussian::Definiteness::overflow) {
+  if (!watched.overflow_told && assessment.definiteness == gaussian::Definiteness::overflow) {
     watched.overflow_told = true;
     simulation_.record().event(simulation_.now(), watched.agent, "belief overflow",
                                options_.subjects[static_cast<std::size_t>(subject)].name);
@@ -102,16 +103,18 @@ void Witness::keep(AgentId agent, int subject, const Values& values) {
   }
 }
 
-Witness::Values Witness::measure(const TrackedBelief& tracked, int subject, bool central) const {
+Witness::Values Witness::measure(const TrackedBelief& tracked,
+                                 const gaussian::Assessment& assessment, int subject,
+                                 bool central) const {
   Values values;
   values.fill(kNone);
   const gaussian::Belief& belief = tracked.belief;
   const gaussian::Vector x = truth(subject);
-  if (const auto estimate = gaussian::state(belief)) {
+  if (const auto& estimate = assessment.state) {
     at(values, Metric::rms_error_m) = (*estimate - x).norm() / std::sqrt(double(dimension_));
+    at(values, Metric::nees) = gaussian::nees_of_error(belief, *estimate - x).value_or(kNone);
   }
-  at(values, Metric::claimed_sigma_m) = gaussian::claimed_sigma(belief).value_or(kNone);
-  at(values, Metric::nees) = gaussian::nees(belief, x).value_or(kNone);
+  at(values, Metric::claimed_sigma_m) = assessment.claimed_sigma.value_or(kNone);
   if (wants(Metric::entropy_nats)) {
     at(values, Metric::entropy_nats) = gaussian::entropy_nats(belief).value_or(kNone);
   }
@@ -120,14 +123,15 @@ Witness::Values Witness::measure(const TrackedBelief& tracked, int subject, bool
     at(values, Metric::kl_to_central_nats) =
         gaussian::kl_divergence_nats(reference, belief).value_or(kNone);
   }
-  const gaussian::Definiteness kind = gaussian::definiteness(belief);
+  const gaussian::Definiteness kind = assessment.definiteness;
   at(values, Metric::not_positive) =
       kind == gaussian::Definiteness::indefinite || kind == gaussian::Definiteness::overflow;
-  if (options_.ledger && !central) measure_ledger(tracked, subject, values);
+  if (options_.ledger && !central) measure_ledger(tracked, assessment, subject, values);
   return values;
 }
 
-void Witness::measure_ledger(const TrackedBelief& tracked, int subject, Values& values) const {
+void Witness::measure_ledger(const TrackedBelief& tracked, const gaussian::Assessment& assessment,
+                             int subject, Values& values) const {
   const MeasurementBook& book = books_[static_cast<std::size_t>(subject)];
   const gaussian::Belief& belief = tracked.belief;
   const Multiplicity counted = multiplicity(tracked.ledger);
@@ -143,10 +147,9 @@ void Witness::measure_ledger(const TrackedBelief& tracked, int subject, Values& 
   const double n = dimension_;
   at(values, Metric::true_sigma_m) = std::sqrt(P->trace() / n);
   at(values, Metric::ledger_anees) = belief.omega.cwiseProduct(*P).sum() / n;
-  const auto estimate = gaussian::state(belief);
-  if (!estimate) return;
+  if (!assessment.state) return;
   at(values, Metric::ledger_nees) =
-      gaussian::mahalanobis_squared(*estimate - truth(subject), *P).value_or(kNone);
+      gaussian::mahalanobis_squared(*assessment.state - truth(subject), *P).value_or(kNone);
 }
 
 gaussian::Vector Witness::truth(int subject) const {
@@ -175,9 +178,9 @@ void Witness::finish(const Watched& watched) {
     const int subject = static_cast<int>(s);
     const gaussian::Belief& belief =
         watched.estimator ? watched.estimator->tracked(subject).belief : central_[s].belief;
-    const auto estimate = gaussian::state(belief);
-    const double sigma = gaussian::claimed_sigma(belief).value_or(kNone);
-    distance += estimate ? (*estimate - truth(subject)).norm() : kNone;
+    const gaussian::Assessment assessment = gaussian::assess(belief);
+    const double sigma = assessment.claimed_sigma.value_or(kNone);
+    distance += assessment.state ? (*assessment.state - truth(subject)).norm() : kNone;
     variance += sigma * sigma;
   }
   const auto subjects = static_cast<double>(central_.size());

@@ -61,8 +61,10 @@ class Witness {
   void schedule_sample(Time at);
   void sample();
   void sample(Watched& watched, int subject);
-  Values measure(const TrackedBelief& tracked, int subject, bool central) const;
-  void measure_ledger(const TrackedBelief& tracked, int subject, Values& values) const;
+  Values measure(const TrackedBelief& tracked, const gaussian::Assessment& assessment, int subject,
+                 bool central) const;
+  void measure_ledger(const TrackedBelief& tracked, const gaussian::Assessment& assessment,
+                      int subject, Values& values) const;
   void keep(AgentId agent, int subject, const Values& values);
   void finish(const Watched& watched);
   bool wants(Metric metric) const { return wanted_[static_cast<std::size_t>(metric)]; }

@@ -171,7 +171,8 @@ Run::Run(std::shared_ptr<const PreparedScenario> prepared, const Catalog& catalo
                    .record = {.keep_messages = prepared_->scenario.record.messages == "all",
                               .digest = options.digest,
                               .ledger_digest = options.ledger_digest}}),
-      radio_(simulation_, prepared_->topology, radio_options(prepared_->scenario.radio)) {
+      radio_(std::make_unique<Radio>(simulation_, prepared_->topology,
+                                     radio_options(prepared_->scenario.radio))) {
   simulation_.name_of_agent = [this](AgentId id) {
     return id >= 0 ? prepared_->names[static_cast<std::size_t>(id)] : std::string("central");
   };
@@ -200,7 +201,7 @@ void Run::build_agents(const Catalog& catalog) {
     const auto id = static_cast<AgentId>(i);
     record.agent(id, prepared_->names[i], spec.kind);
     contexts_.push_back(
-        std::make_unique<Context>(simulation_, radio_,
+        std::make_unique<Context>(simulation_, *radio_,
                                   Context::Identity{.id = id,
                                                     .name = prepared_->names[i],
                                                     .kind = spec.kind,
@@ -208,7 +209,7 @@ void Run::build_agents(const Catalog& catalog) {
     const auto own = catalog.agents().find(spec.kind);
     agents_.push_back(own == catalog.agents().end() ? make_estimator(id)
                                                     : own->second.make(*contexts_.back()));
-    radio_.attach(id, *agents_.back());
+    radio_->attach(id, *agents_.back());
   }
 }
 
@@ -259,10 +260,17 @@ RunEnd Run::run() {
   return end;
 }
 
+void Run::keep_record_only() {
+  agents_.clear();
+  contexts_.clear();
+  radio_.reset();
+  witness_.reset();
+}
+
 void Run::leave_final_values() {
   for (const auto& agent : agents_) agent->finish();
   if (witness_) witness_->finish();
-  radio_.finish();
+  radio_->finish();
   record_radio();
   record_log();
 }
@@ -270,7 +278,7 @@ void Run::leave_final_values() {
 void Run::record_radio() {
   Record& record = simulation_.record();
   for (AgentId id = 0; id < static_cast<AgentId>(agents_.size()); ++id) {
-    const SenderCounts& counts = radio_.counts(id);
+    const SenderCounts& counts = radio_->counts(id);
     const auto scalar = [&](const std::string& name, double value) {
       record.scalar(id, record.name(name), value);
     };

@@ -70,6 +70,8 @@ class Run {
   /// Once. A run that failed has a record, too: up to the failure.
   RunEnd run();
   const Record& record() const { return simulation_.record(); }
+  /// After run(): gives up agents, radio and witness, where they were made; the record stays.
+  void keep_record_only();
 
  private:
   void build_agents(const Catalog& catalog);
@@ -82,7 +84,7 @@ class Run {
   std::shared_ptr<const PreparedScenario> prepared_;
   Simulation simulation_;
   std::unique_ptr<Witness> witness_;  // owns the riders of packets in flight
-  Radio radio_;
+  std::unique_ptr<Radio> radio_;
   std::vector<std::unique_ptr<Context>> contexts_;
   std::vector<std::unique_ptr<Agent>> agents_;
 };

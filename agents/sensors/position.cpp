@@ -37,7 +37,7 @@ gaussian::Belief PositionSensor::measure(Stream& draws) const {
   z(1) = options_.target_m[1] + along * along_[1] + across * along_[0];
   gaussian::Belief information = gaussian::Belief::unknown(2);
   information.omega = information_;
-  information.xi.noalias() = information_ * z;
+  information.xi = information_.lazyProduct(z);
   return information;
 }
 

@@ -21,9 +21,8 @@ struct Factor {
 
 std::optional<Factor> factor(const Matrix& omega) {
   const Scaled scaled = scale(omega);
-  const auto l = cholesky(scaled);
-  if (!l) return std::nullopt;
-  return Factor{*l, scaled.factor};
+  if (scaled.cholesky.size() == 0) return std::nullopt;
+  return Factor{scaled.cholesky, scaled.factor};
 }
 
 /// L⁻¹D·m: the whitened m, so that gram() of it is mᵀΩ⁻¹m.
@@ -51,7 +50,7 @@ std::optional<Vector> mean(const Factor& f, const Vector& xi) {
   Matrix x = whitened(f, xi);
   solve_lower_transposed(f.l, x);
   scale_rows(x, f.d);
-  if (!x.allFinite()) return std::nullopt;
+  if (!all_finite(x)) return std::nullopt;
   return Vector(x);
 }
 
@@ -62,6 +61,38 @@ double quadratic(const Matrix& omega, const Vector& e) {
     for (Eigen::Index i = 0; i < e.size(); ++i) sum += e(i) * omega(i, j) * e(j);
   }
   return sum;
+}
+
+/// Ω⁻¹ξ of an equilibrated Ω.
+std::optional<Vector> state_of(const Scaled& scaled, const Vector& xi) {
+  if (!scaled.invertible()) return std::nullopt;
+  Matrix x = xi;
+  scale_rows(x, scaled.factor);
+  x = solve(scaled, x);
+  scale_rows(x, scaled.factor);
+  if (!all_finite(x)) return std::nullopt;
+  return Vector(x);
+}
+
+/// √(tr Ω⁻¹ / n) of an equilibrated Ω = D⁻¹LLᵀD⁻¹: the squares of all entries of L⁻¹D are added up.
+std::optional<double> claimed_sigma_of(const Scaled& scaled) {
+  const Matrix& l = scaled.cholesky;
+  const Eigen::Index n = l.rows();
+  if (n == 0) return std::nullopt;
+  double trace = 0.0;
+  for (Eigen::Index j = 0; j < n; ++j) {
+    double column[dimension_max];
+    double squares = 0.0;
+    for (Eigen::Index i = j; i < n; ++i) {
+      double x = i == j ? scaled.factor(j) : 0.0;
+      for (Eigen::Index k = j; k < i; ++k) x -= l(i, k) * column[k];
+      column[i] = x / l(i, i);
+      squares += column[i] * column[i];
+    }
+    trace += squares;
+  }
+  if (!std::isfinite(trace)) return std::nullopt;
+  return std::sqrt(trace / static_cast<double>(n));
 }
 
 std::optional<double> if_finite(double value) {
@@ -128,28 +159,21 @@ Belief measurement_information(const Matrix& M, const Matrix& S, const Vector& z
 }
 
 Definiteness definiteness(const Belief& belief) {
-  if (!belief.xi.allFinite()) return Definiteness::overflow;
+  if (!all_finite(belief.xi)) return Definiteness::overflow;
   return scale(belief.omega).definiteness;
 }
 
 std::optional<Vector> state(const Belief& belief) {
-  if (!belief.xi.allFinite()) return std::nullopt;
-  const Scaled scaled = scale(belief.omega);
-  if (!scaled.invertible()) return std::nullopt;
-  Matrix x = belief.xi;
-  scale_rows(x, scaled.factor);
-  x = solve(scaled, x);
-  scale_rows(x, scaled.factor);
-  if (!x.allFinite()) return std::nullopt;
-  return Vector(x);
+  if (!all_finite(belief.xi)) return std::nullopt;
+  return state_of(scale(belief.omega), belief.xi);
 }
 
 std::optional<Matrix> covariance(const Belief& belief) {
-  if (!belief.xi.allFinite()) return std::nullopt;
+  if (!all_finite(belief.xi)) return std::nullopt;
   const auto f = factor(belief.omega);
   if (!f) return std::nullopt;
   const Matrix sigma = gram(whitened(*f, Matrix::Identity(f->l.rows(), f->l.cols())));
-  if (!sigma.allFinite()) return std::nullopt;
+  if (!all_finite(sigma)) return std::nullopt;
   return sigma;
 }
 
@@ -160,7 +184,7 @@ std::optional<double> log_determinant(const Matrix& omega) {
 }
 
 std::optional<double> entropy_nats(const Belief& belief) {
-  if (!belief.xi.allFinite()) return std::nullopt;
+  if (!all_finite(belief.xi)) return std::nullopt;
   const auto log_det = log_determinant(belief.omega);
   if (!log_det) return std::nullopt;
   return 0.5 * (belief.dimension() * log_2_pi_e - *log_det);
@@ -168,7 +192,7 @@ std::optional<double> entropy_nats(const Belief& belief) {
 
 std::optional<double> kl_divergence_nats(const Belief& p, const Belief& q) {
   require(p.dimension() == q.dimension(), "kl_divergence_nats: dimensions differ");
-  if (!p.xi.allFinite() || !q.xi.allFinite()) return std::nullopt;
+  if (!all_finite(p.xi) || !all_finite(q.xi)) return std::nullopt;
   const auto fp = factor(p.omega);
   const auto fq = factor(q.omega);
   if (!fp || !fq) return std::nullopt;
@@ -189,7 +213,12 @@ std::optional<double> nees(const Belief& belief, const Vector& truth) {
   require(belief.dimension() == truth.size(), "nees: dimensions differ");
   const auto mu = state(belief);
   if (!mu) return std::nullopt;
-  return if_finite(quadratic(belief.omega, *mu - truth));
+  return nees_of_error(belief, *mu - truth);
+}
+
+std::optional<double> nees_of_error(const Belief& belief, const Vector& error) {
+  require(belief.dimension() == error.size(), "nees_of_error: dimensions differ");
+  return if_finite(quadratic(belief.omega, error));
 }
 
 std::optional<double> mahalanobis_squared(const Vector& e, const Matrix& P) {
@@ -202,9 +231,14 @@ std::optional<double> mahalanobis_squared(const Vector& e, const Matrix& P) {
 }
 
 std::optional<double> claimed_sigma(const Belief& belief) {
-  const auto sigma = covariance(belief);
-  if (!sigma) return std::nullopt;
-  return std::sqrt(sigma->trace() / belief.dimension());
+  if (!all_finite(belief.xi)) return std::nullopt;
+  return claimed_sigma_of(scale(belief.omega));
+}
+
+Assessment assess(const Belief& belief) {
+  if (!all_finite(belief.xi)) return {};
+  const Scaled scaled = scale(belief.omega);
+  return {scaled.definiteness, state_of(scaled, belief.xi), claimed_sigma_of(scaled)};
 }
 
 PositionMeasurement range_bearing_to_position(const Pose& pose, double range_m, double bearing_rad,

@@ -73,11 +73,22 @@ std::optional<double> kl_divergence_nats(const Belief& p, const Belief& q);
 /// negative for an indefinite Ω.
 std::optional<double> nees(const Belief& belief, const Vector& truth);
 
+/// The same for one who knows the mean: eᵀΩe of its error e = μ − x (n).
+std::optional<double> nees_of_error(const Belief& belief, const Vector& error);
+
 /// eᵀP⁻¹e of an error e (n) under a covariance P (n×n); nothing unless P is positive definite.
 std::optional<double> mahalanobis_squared(const Vector& e, const Matrix& P);
 
 /// √(tr Σ / n): claimed standard deviation per axis; nothing unless positive definite.
 std::optional<double> claimed_sigma(const Belief& belief);
+
+/// What definiteness(), state() and claimed_sigma() say, from one factorisation of Ω.
+struct Assessment {
+  Definiteness definiteness = Definiteness::overflow;
+  std::optional<Vector> state;
+  std::optional<double> claimed_sigma;
+};
+Assessment assess(const Belief& belief);
 
 /// A range-bearing sighting from a pose that is itself uncertain, as a position measurement
 /// z (2), S (2×2) in the plane, first order: σ_range² along the line of sight,

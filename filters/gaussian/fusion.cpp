@@ -1,5 +1,6 @@
 #include "filters/gaussian/fusion.hpp"
 
+#include "filters/gaussian/symmetric.hpp"
 #include "sim/kernel/error.hpp"
 
 namespace hearsay::gaussian {
@@ -36,7 +37,7 @@ constexpr std::array<RuleInfo, 6> table = {{
      "Julier & Uhlmann 1997; Merino 2007, eq. 3.43-3.46"},
 }};
 
-bool finite(const Belief& belief) { return belief.omega.allFinite() && belief.xi.allFinite(); }
+bool finite(const Belief& belief) { return all_finite(belief.omega) && all_finite(belief.xi); }
 
 Coefficients weighted(const Intersection& intersection) {
   if (intersection.skipped != nullptr) return {1.0, 0.0, 0.0, intersection.skipped};

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "filters/gaussian/fusion.hpp"
+#include "filters/gaussian/regular_pair.hpp"
 #include "filters/gaussian/symmetric.hpp"
 #include "sim/kernel/error.hpp"
 
@@ -29,6 +30,10 @@ struct Pair {
   std::optional<Intersection> answer;
   Directions directions;
 };
+
+void require_equal_dimensions(const Matrix& a, const Matrix& b) {
+  require(a.rows() == b.rows() && a.rows() >= 1, "intersect: dimensions differ");
+}
 
 double largest(const Matrix& m) { return m.size() == 0 ? 0.0 : m.cwiseAbs().maxCoeff(); }
 
@@ -57,9 +62,24 @@ std::optional<Intersection> decided(const Scaled& a, const Scaled& b, const Matr
 
 /// Wᵀ m W.
 Matrix congruence(const Matrix& m, const Matrix& w) {
-  const Matrix mw = m.lazyProduct(w);
-  Matrix out = w.transpose().lazyProduct(mw);
-  out = 0.5 * (out + Matrix(out.transpose()));
+  const Eigen::Index n = w.rows();
+  const Eigen::Index r = w.cols();
+  Matrix mw(n, r);
+  for (Eigen::Index j = 0; j < r; ++j) {
+    for (Eigen::Index i = 0; i < n; ++i) {
+      mw(i, j) = m(i, 0) * w(0, j);
+      for (Eigen::Index k = 1; k < n; ++k) mw(i, j) += m(i, k) * w(k, j);
+    }
+  }
+  const auto entry = [&](Eigen::Index i, Eigen::Index j) {
+    double sum = w(0, i) * mw(0, j);
+    for (Eigen::Index k = 1; k < n; ++k) sum += w(k, i) * mw(k, j);
+    return sum;
+  };
+  Matrix out(r, r);
+  for (Eigen::Index j = 0; j < r; ++j) {
+    for (Eigen::Index i = 0; i <= j; ++i) out(i, j) = out(j, i) = 0.5 * (entry(i, j) + entry(j, i));
+  }
   return out;
 }
 
@@ -188,7 +208,6 @@ double zero_of(const SlopeAt& slope_at) {
 
 template <typename SlopeAt>
 Pair prepared(const Matrix& omega_a, const Matrix& omega_b, const SlopeAt& slope_at) {
-  require(omega_a.rows() == omega_b.rows() && omega_a.rows() >= 1, "intersect: dimensions differ");
   const Scaled a = scale(omega_a);
   const Scaled b = scale(omega_b);
   if (const auto answer = decided(a, b, omega_a, omega_b)) return {answer, {}};
@@ -207,6 +226,8 @@ Pair prepared(const Matrix& omega_a, const Matrix& omega_b, const SlopeAt& slope
 }  // namespace
 
 Intersection intersect_det(const Matrix& omega_a, const Matrix& omega_b) {
+  require_equal_dimensions(omega_a, omega_b);
+  if (const auto omega = omega_of_regular_pair(omega_a, omega_b)) return {*omega, nullptr};
   const Pair pair = prepared(omega_a, omega_b, determinant_slope);
   if (pair.answer) return *pair.answer;
   const Directions& d = pair.directions;
@@ -220,6 +241,7 @@ Intersection intersect_det(const Matrix& omega_a, const Matrix& omega_b) {
 }
 
 Intersection intersect_trace(const Matrix& omega_a, const Matrix& omega_b) {
+  require_equal_dimensions(omega_a, omega_b);
   const Pair pair = prepared(omega_a, omega_b, trace_slope);
   if (pair.answer) return *pair.answer;
   const Directions& d = pair.directions;

@@ -1,7 +1,9 @@
 #include "filters/gaussian/symmetric.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 #include "sim/kernel/error.hpp"
 
@@ -12,10 +14,15 @@ constexpr double singular_below = 1e-13;  // times n, of the largest eigenvalue
 
 /// e such that value lies in [½, 1)·2^e.
 int binary_exponent(double value) {
+  const int biased = static_cast<int>(std::bit_cast<std::uint64_t>(value) >> 52) & 0x7ff;
+  if (biased != 0 && biased != 0x7ff) return biased - 1022;  // a normal number, as nearly all are
   int e = 0;
   std::frexp(value, &e);
   return e;
 }
+
+/// 2^e, |e| ≤ 1022.
+double power_of_two(int e) { return std::bit_cast<double>(std::uint64_t(1023 + e) << 52); }
 
 /// Half of it, rounded so that value·2^(−2·half) lies in [½, 2).
 int half_exponent(double value) {
@@ -71,7 +78,7 @@ bool diagonal_factors(const Matrix& omega, Vector& factor) {
   for (Eigen::Index i = 0; i < omega.rows(); ++i) {
     const double d = omega(i, i);
     if (d > 0) {
-      factor(i) = std::ldexp(1.0, -half_exponent(d));
+      factor(i) = power_of_two(-half_exponent(d));
     } else {
       if (d < 0 || (omega.row(i).array() != 0.0).any()) return false;
       factor(i) = 1.0;
@@ -80,16 +87,58 @@ bool diagonal_factors(const Matrix& omega, Vector& factor) {
   return true;
 }
 
-Matrix equilibrated(const Matrix& omega, const Vector& factor) {
+/// Puts DΩD into `out`. @return whether all entries are below 2 in size (no NaN either).
+bool equilibrate(const Matrix& omega, const Vector& factor, Matrix& out) {
   const Eigen::Index n = omega.rows();
-  Matrix out(n, n);
+  out.resize(n, n);
+  bool small = true;
   for (Eigen::Index j = 0; j < n; ++j) {
-    for (Eigen::Index i = 0; i < n; ++i) out(i, j) = omega(i, j) * factor(i) * factor(j);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double entry = omega(i, j) * factor(i) * factor(j);
+      out(i, j) = entry;
+      small = small && std::fabs(entry) < 2.0;
+    }
   }
-  return out;
+  return small;
+}
+
+/// Puts the lower factor into `l`; false, `l` empty, unless all pivots are positive.
+bool factor_cholesky(const Matrix& matrix, Matrix& l) {
+  const Eigen::Index n = matrix.rows();
+  l = matrix;
+  for (Eigen::Index j = 0; j < n; ++j) {
+    for (Eigen::Index k = 0; k < j; ++k) {
+      for (Eigen::Index i = j; i < n; ++i) l(i, j) -= l(i, k) * l(j, k);
+    }
+    if (!(l(j, j) > 0.0)) {
+      l.resize(0, 0);
+      return false;
+    }
+    l(j, j) = std::sqrt(l(j, j));
+    for (Eigen::Index i = j + 1; i < n; ++i) l(i, j) /= l(j, j);
+    for (Eigen::Index i = 0; i < j; ++i) l(i, j) = 0.0;
+  }
+  return true;
+}
+
+/// True if the matrix LLᵀ is positive definite by so much that no eigenvalue need be computed. With
+/// its trace t the largest is at most t; by the inequality of the means the product of all but the
+/// least is at most (t/(n−1))ⁿ⁻¹, so the least is at least |LLᵀ|((n−1)/t)ⁿ⁻¹.
+bool clearly_positive(const Matrix& l, double trace) {
+  constexpr double margin = 10.0;  // for the rounding of L
+  const auto n = static_cast<double>(l.rows());
+  double least = l(0, 0) * l(0, 0);
+  for (Eigen::Index i = 1; i < l.rows(); ++i) least *= l(i, i) * l(i, i) * ((n - 1.0) / trace);
+  return least > margin * n * singular_below * trace;
 }
 
 void judge(Scaled& scaled) {
+  const bool factored = factor_cholesky(scaled.matrix, scaled.cholesky);
+  if (factored && clearly_positive(scaled.cholesky, scaled.matrix.trace())) {
+    scaled.rank = static_cast<int>(scaled.matrix.rows());
+    scaled.definiteness = Definiteness::positive;
+    return;
+  }
   const Vector values = eigenvalues(scaled.matrix);
   const Eigen::Index n = values.size();
   const double largest = std::max(std::fabs(values(0)), std::fabs(values(n - 1)));
@@ -98,6 +147,7 @@ void judge(Scaled& scaled) {
   scaled.definiteness = values(0) < -threshold ? Definiteness::indefinite
                         : scaled.rank == n     ? Definiteness::positive
                                                : Definiteness::singular;
+  if (scaled.definiteness != Definiteness::positive) scaled.cholesky.resize(0, 0);
 }
 
 }  // namespace
@@ -105,40 +155,22 @@ void judge(Scaled& scaled) {
 Scaled scale(const Matrix& omega) {
   Scaled scaled;
   if (omega.size() == 0) return scaled;
-  if (!omega.allFinite()) {
-    scaled.matrix = omega;
-    scaled.definiteness = Definiteness::overflow;
-    return scaled;
-  }
   scaled.factor.resize(omega.rows());
-  bool fair = diagonal_factors(omega, scaled.factor);
-  if (fair) {
-    scaled.matrix = equilibrated(omega, scaled.factor);
-    // |Ω(i, j)| ≤ √(Ω(i, i)·Ω(j, j)) < 2 in any semi-definite matrix.
-    fair = scaled.matrix.cwiseAbs().maxCoeff() < 2.0;
-  }
+  // |Ω(i, j)| ≤ √(Ω(i, i)·Ω(j, j)) < 2 in any semi-definite matrix.
+  const bool fair =
+      diagonal_factors(omega, scaled.factor) && equilibrate(omega, scaled.factor, scaled.matrix);
   if (!fair) {
+    if (!all_finite(omega)) {
+      scaled.matrix = omega;
+      scaled.factor.resize(0);
+      scaled.definiteness = Definiteness::overflow;
+      return scaled;
+    }
     scaled.factor.setConstant(std::ldexp(1.0, -(exponent_of(omega) / 2)));
-    scaled.matrix = equilibrated(omega, scaled.factor);
+    equilibrate(omega, scaled.factor, scaled.matrix);
   }
   judge(scaled);
   return scaled;
-}
-
-std::optional<Matrix> cholesky(const Scaled& scaled) {
-  if (scaled.definiteness != Definiteness::positive) return std::nullopt;
-  Matrix l = scaled.matrix;
-  const Eigen::Index n = l.rows();
-  for (Eigen::Index j = 0; j < n; ++j) {
-    for (Eigen::Index k = 0; k < j; ++k) {
-      for (Eigen::Index i = j; i < n; ++i) l(i, j) -= l(i, k) * l(j, k);
-    }
-    if (!(l(j, j) > 0.0)) return std::nullopt;
-    l(j, j) = std::sqrt(l(j, j));
-    for (Eigen::Index i = j + 1; i < n; ++i) l(i, j) /= l(j, j);
-    for (Eigen::Index i = 0; i < j; ++i) l(i, j) = 0.0;
-  }
-  return l;
 }
 
 void solve_lower(const Matrix& l, Matrix& x) {
@@ -162,9 +194,9 @@ void solve_lower_transposed(const Matrix& l, Matrix& x) {
 Matrix solve(const Scaled& scaled, const Matrix& rhs) {
   require(scaled.invertible(), "solve: the matrix is singular");
   Matrix x = rhs;
-  if (const auto l = cholesky(scaled)) {
-    solve_lower(*l, x);
-    solve_lower_transposed(*l, x);
+  if (scaled.cholesky.size() > 0) {
+    solve_lower(scaled.cholesky, x);
+    solve_lower_transposed(scaled.cholesky, x);
     return x;
   }
   const Eigenpairs e = eigenpairs(scaled.matrix);

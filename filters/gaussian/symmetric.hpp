@@ -7,6 +7,8 @@
 // take a fraction of the time of the general ones, and their order of operations is in sight.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "filters/gaussian/belief.hpp"
@@ -18,7 +20,8 @@ struct Scaled {
   Matrix matrix;  ///< matrix(i, j) = factor(i)·Ω(i, j)·factor(j)
   Vector factor;  ///< powers of two: D is its diagonal matrix
   Definiteness definiteness = Definiteness::singular;
-  int rank = 0;  ///< eigenvalues of `matrix` beyond n·1e-13 of the largest; 0 for an overflow
+  int rank = 0;     ///< eigenvalues of `matrix` beyond n·1e-13 of the largest; 0 for an overflow
+  Matrix cholesky;  ///< lower factor of `matrix` if positive definite; else empty
 
   bool invertible() const { return rank > 0 && rank == matrix.rows(); }
 };
@@ -28,15 +31,18 @@ struct Scaled {
 /// have, one common factor is used instead.
 Scaled scale(const Matrix& omega);
 
-/// The lower Cholesky factor of a matrix that was judged positive definite; nothing otherwise.
-std::optional<Matrix> cholesky(const Scaled& scaled);
-
 /// x ← L⁻¹x and x ← L⁻ᵀx, L n×n lower triangular, x n×m.
 void solve_lower(const Matrix& l, Matrix& x);
 void solve_lower_transposed(const Matrix& l, Matrix& x);
 
 /// matrix⁻¹·rhs (n×m) for an invertible one: by Cholesky, or by eigenvectors where indefinite.
 Matrix solve(const Scaled& scaled, const Matrix& rhs);
+
+/// Eigen's allFinite() subtracts each entry from itself and looks at the sum; this looks at each.
+template <typename Plain>
+bool all_finite(const Plain& m) {
+  return std::all_of(m.data(), m.data() + m.size(), [](double x) { return std::isfinite(x); });
+}
 
 /// Row i of `m` times factor(i).
 void scale_rows(Matrix& m, const Vector& factor);

@@ -114,6 +114,15 @@ void unite(std::uint8_t* into, const std::uint8_t* from, std::size_t count) {
   for (; k < count; ++k) into[k] |= from[k];
 }
 
+template <typename T>
+void copy_with_room(const std::vector<T>& from, std::vector<T>& to) {
+  if (to.capacity() < from.size()) {
+    to.clear();
+    to.reserve(2 * from.size());
+  }
+  to.assign(from.begin(), from.end());
+}
+
 /// D·m·D·2^exponent for a diagonal D of powers of two.
 Matrix both_sides(const gaussian::Vector& d, const Matrix& m, int exponent) {
   Matrix out(m.rows(), m.cols());
@@ -160,6 +169,14 @@ Matrix MeasurementBook::weighted_square(std::span<const double> weights, double 
                                   return w * w;
                                 });
   return unpacked(sums, dimension_);
+}
+
+Ledger& Ledger::operator=(const Ledger& other) {
+  if (this != &other) {
+    copy_with_room(other.weights_, weights_);
+    copy_with_room(other.reach_, reach_);
+  }
+  return *this;
 }
 
 void Ledger::measured(std::size_t index) {

@@ -45,6 +45,14 @@ class MeasurementBook {
 /// The weights and the reach of one belief. Grows with the highest measurement it has met.
 class Ledger {
  public:
+  Ledger() = default;
+  Ledger(const Ledger&) = default;
+  Ledger(Ledger&&) = default;
+  Ledger& operator=(Ledger&&) = default;
+  /// Copies; where there is no room, makes it for twice as much: what was heard last is overwritten
+  /// by an ever longer ledger, again and again.
+  Ledger& operator=(const Ledger& other);
+
   /// Measurement `index` was used once, directly (its weight grows by one).
   void measured(std::size_t index);
   /// this = a·this + b·received − c·common; reach = union of this and received. `common` may be

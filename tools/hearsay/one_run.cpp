@@ -16,6 +16,7 @@ FinishedRun execute(const std::shared_ptr<const PreparedScenario>& prepared, con
   finished.end = finished.run->run();
   const bool ledger = prepared->scenario.record.ledger == "on";
   finished.digest = digest_text(digest, ledger ? &ledger_digest : nullptr);
+  finished.run->keep_record_only();
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
   finished.wall_s = wall.count();
   return finished;

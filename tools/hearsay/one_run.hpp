@@ -10,7 +10,7 @@
 namespace hearsay::program {
 
 struct FinishedRun {
-  std::unique_ptr<Run> run;
+  std::unique_ptr<Run> run;  ///< only its record is left
   RunEnd end;
   std::string digest;
   double wall_s = 0.0;

@@ -54,24 +54,24 @@ class CellScenario {
   /// @throws InputError.
   std::shared_ptr<const PreparedScenario> get(const Catalog& catalog, LogCache& logs) {
     const std::scoped_lock lock(mutex_);
-    if (!prepared_) prepared_ = prepare(load(catalog), catalog, logs);
+    if (!prepared_) {
+      prepared_ = prepare(load_scenario(study_.scenario_file, cell_.set, known_names(catalog)),
+                          catalog, logs);
+      config_hash_ = scenario_hash(prepared_->scenario);
+    }
     return prepared_;
   }
   void release() {
     const std::scoped_lock lock(mutex_);
     prepared_.reset();
   }
-  std::string config_hash(const Catalog& catalog) {
+  /// After get().
+  std::string config_hash() {
     const std::scoped_lock lock(mutex_);
-    if (config_hash_.empty()) config_hash_ = scenario_hash(load(catalog));
     return config_hash_;
   }
 
  private:
-  Scenario load(const Catalog& catalog) const {
-    return load_scenario(study_.scenario_file, cell_.set, known_names(catalog));
-  }
-
   const Study& study_;
   Cell cell_;
   std::mutex mutex_;
@@ -105,7 +105,9 @@ class Conveyor {
   void give(const Job* job, Outcome outcome) {
     const std::scoped_lock lock(mutex_);
     outcomes_.emplace(static_cast<std::size_t>(job - jobs_.data()), std::move(outcome));
-    news_.notify_one();
+    // Not for each: without an idle processor the writer would push a worker aside. (next() also
+    // looks by itself now and then.)
+    if (outcomes_.size() >= batch || taken_ == jobs_.size()) news_.notify_one();
   }
   /// The outcome of the next job in order, or nothing after the last. Wakes up now and then.
   std::optional<Outcome> next(const Job*& job, const std::function<bool()>& stop) {
@@ -136,6 +138,7 @@ class Conveyor {
     stopped_ = true;
     room_.notify_all();
   }
+  static constexpr std::size_t batch = 8;  // well below the window
   std::vector<Job> jobs_;
   std::size_t window_;
   std::mutex mutex_;
@@ -146,18 +149,20 @@ class Conveyor {
   bool stopped_ = false;
 };
 
-void work(Conveyor& conveyor, const Study& study, const Catalog& catalog, LogCache& logs) {
-  while (const Job* job = conveyor.take()) {
-    Outcome outcome;
-    try {
-      outcome.finished = execute(job->cell->get(catalog, logs), catalog,
-                                 study.seed + static_cast<std::uint64_t>(job->repetition - 1));
-    } catch (const std::exception& error) {
-      outcome.input_error = error.what();
-    }
-    if (job->repetition == study.repetitions) job->cell->release();
-    conveyor.give(job, std::move(outcome));
+/// Does one job. False if there is none left.
+bool work_once(Conveyor& conveyor, const Study& study, const Catalog& catalog, LogCache& logs) {
+  const Job* job = conveyor.take();
+  if (job == nullptr) return false;
+  Outcome outcome;
+  try {
+    outcome.finished = execute(job->cell->get(catalog, logs), catalog,
+                               study.seed + static_cast<std::uint64_t>(job->repetition - 1));
+  } catch (const std::exception& error) {
+    outcome.input_error = error.what();
   }
+  if (job->repetition == study.repetitions) job->cell->release();
+  conveyor.give(job, std::move(outcome));
+  return true;
 }
 
 /// A label as the database has it: strings bare, the rest as in the study file.
@@ -170,8 +175,7 @@ nlohmann::ordered_json to_json(const Value& value) {
   return std::visit([](const auto& v) { return nlohmann::ordered_json(v); }, value);
 }
 
-RunRow row_of(const Job& job, const Study& study, const Catalog& catalog,
-              const FinishedRun& finished) {
+RunRow row_of(const Job& job, const Study& study, const FinishedRun& finished) {
   nlohmann::ordered_json parameters = nlohmann::ordered_json::object();
   RunRow row;
   for (const auto& [axis, label] : job.cell->cell().labels) {
@@ -187,7 +191,7 @@ RunRow row_of(const Job& job, const Study& study, const Catalog& catalog,
   row.ok = finished.end.ok();
   row.reason = how_it_ended(finished.end);
   row.digest = finished.digest;
-  row.config_hash = job.cell->config_hash(catalog);
+  row.config_hash = job.cell->config_hash();
   row.wall_s = finished.wall_s;
   row.events = finished.end.events;
   row.version = program_version();
@@ -195,7 +199,7 @@ RunRow row_of(const Job& job, const Study& study, const Catalog& catalog,
 }
 
 /// Which runs are still to be done. Refuses a database whose runs were made from other settings.
-std::vector<Job> open_jobs(const Study& study, const Catalog& catalog, const SweepOptions& options,
+std::vector<Job> open_jobs(const Study& study, const SweepOptions& options,
                            DatabaseWriter& database,
                            std::vector<std::unique_ptr<CellScenario>>& cells) {
   const std::set<std::int64_t> present = database.run_ids();
@@ -210,7 +214,7 @@ std::vector<Job> open_jobs(const Study& study, const Catalog& catalog, const Swe
       ++id;
       if (!keep.contains(id)) {
         jobs.push_back({id, cell.get(), r});
-      } else if (r == 1 && database.config_hash(id) != cell->config_hash(catalog)) {
+      } else if (r == 1 && database.config_hash(id) != cell->config_hash()) {
         throw InputError(options.database, 0,
                          "run " + std::to_string(id) + " of study '" + study.name +
                              "' was made from other settings than the study has now; give another "
@@ -259,7 +263,7 @@ SweepSummary sweep_study(const Study& study, const Catalog& catalog, const Sweep
                       config_of(study, cell_scenarios)});
   SweepSummary summary;
   summary.runs = static_cast<std::int64_t>(cell_scenarios.size()) * study.repetitions;
-  std::vector<Job> jobs = open_jobs(study, catalog, options, database, cell_scenarios);
+  std::vector<Job> jobs = open_jobs(study, options, database, cell_scenarios);
   database.commit();
   summary.present = summary.runs - static_cast<std::int64_t>(jobs.size());
 
@@ -269,16 +273,24 @@ SweepSummary sweep_study(const Study& study, const Catalog& catalog, const Sweep
   Conveyor conveyor(std::move(jobs), static_cast<std::size_t>(threads) * 32);
   const StopOnSignal stop_on_signal;
   std::vector<std::jthread> workers;
-  for (int t = 0; t < threads; ++t) {
-    workers.emplace_back([&] { work(conveyor, study, catalog, logs); });
+  const bool alone = threads == 1;  // one job, one thread: it takes turns at running and storing
+  for (int t = 0; t < threads && !alone; ++t) {
+    workers.emplace_back([&] {
+      while (work_once(conveyor, study, catalog, logs)) {
+      }
+    });
   }
   auto last_commit = Clock::now();
   try {
     const Job* job = nullptr;
-    while (auto outcome = conveyor.next(job, [] { return stop_requested != 0; })) {
+    const auto stop = [] { return stop_requested != 0; };
+    const auto next = [&] {
+      if (alone && !stop()) work_once(conveyor, study, catalog, logs);
+      return conveyor.next(job, stop);
+    };
+    while (auto outcome = next()) {
       if (!outcome->input_error.empty()) throw InputError(outcome->input_error);
-      database.add(row_of(*job, study, catalog, outcome->finished),
-                   outcome->finished.run->record());
+      database.add(row_of(*job, study, outcome->finished), outcome->finished.run->record());
       ++summary.done;
       if (!outcome->finished.end.ok() && ++summary.failed == 1) {
         summary.first_failure = "run " + std::to_string(job->id) + " (" +

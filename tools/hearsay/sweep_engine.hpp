@@ -1,8 +1,9 @@
 // Runs all cells of a study, several at once, into one database.
 //
-// Workers take runs in the order of their ids and one writer stores them in that order, so a
-// database never holds anything but a prefix of the study (and runs of an earlier call), and ends
-// the same whatever the number of jobs and however often the sweep was interrupted.
+// Workers take runs in the order of their ids and one writer stores them in that order (with one
+// job, one thread does both), so a database never holds anything but a prefix of the study (and
+// runs of an earlier call), and ends the same whatever the number of jobs and however often the
+// sweep was interrupted.
 #pragma once
 
 #include <cstdint>

@@ -63,9 +63,22 @@ TEST(SymmetricMatrices, RankCountsTheDirectionsThatAreKnown) {
       EXPECT_EQ(scaled.rank, rank);
       EXPECT_EQ(scaled.definiteness, Definiteness::singular);
       EXPECT_FALSE(scaled.invertible());
-      EXPECT_FALSE(cholesky(scaled));
+      EXPECT_EQ(scaled.cholesky.size(), 0);
       EXPECT_THROW(solve(scaled, Matrix::Identity(n, n)), BrokenInvariant);
     }
+  }
+}
+
+TEST(SymmetricMatrices, TheShortCutOfScaleAgreesWithTheEigenvalues) {
+  Stream random = stream("short cut");
+  for (int trial = 0; trial < 4000; ++trial) {
+    const int n = 1 + trial % dimension_max;
+    const Scaled scaled = scale(random_information(random, n, random.uniform(0.0, 18.0)));
+    const Vector values = eigenvalues(scaled.matrix);
+    const auto known = (values.array().abs() > n * 1e-13 * values(n - 1)).count();
+    EXPECT_EQ(scaled.rank, known);
+    EXPECT_EQ(scaled.definiteness == Definiteness::positive, known == n && values(0) > 0);
+    EXPECT_EQ(scaled.cholesky.size() > 0, scaled.definiteness == Definiteness::positive);
   }
 }
 
@@ -99,7 +112,7 @@ TEST(SymmetricMatrices, CholeskyFactorsMultiplyBack) {
   Stream random = stream("cholesky");
   for (int n = 1; n <= dimension_max; ++n) {
     const Scaled scaled = scale(random_information(random, n));
-    const Matrix l = *cholesky(scaled);
+    const Matrix l = scaled.cholesky;
     EXPECT_LT(relative(l * l.transpose(), scaled.matrix), 1e-14);
     for (int i = 0; i < n; ++i) {
       for (int j = i + 1; j < n; ++j) EXPECT_EQ(l(i, j), 0.0);

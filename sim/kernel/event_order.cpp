@@ -8,8 +8,7 @@ namespace hearsay {
 
 namespace {
 
-constexpr std::size_t keys_a_bucket = 4;
-constexpr std::size_t rank_max = 16;          // keys: more are sorted by comparing and moving
+constexpr std::size_t keys_a_bucket = 6;
 constexpr std::size_t sort_whole_below = 48;  // keys: a window is not worth its while
 constexpr std::size_t samples = 32;
 constexpr std::size_t room_min = 64;
@@ -19,25 +18,23 @@ constexpr std::size_t late_share = 4;  // `late` holds at most one key in four
 bool after(const EventKey& a, const EventKey& b) { return b < a; }
 
 // Each key goes where as many stand before it as are smaller. For a few keys in random order that
-// is faster than any sort with branches, half of which would be mispredicted.
-void sort_by_rank(std::span<EventKey> keys) {
-  std::array<EventKey, rank_max> copy;
-  std::array<std::uint32_t, rank_max> rank;
-  for (std::uint32_t i = 0; i < keys.size(); ++i) {
-    copy[i] = keys[i];
+// is faster than a sort with branches, half of which would be mispredicted.
+template <std::size_t max>
+void sort_by_rank(const EventKey (&keys)[max], std::size_t count, EventKey* sorted) {
+  std::uint32_t rank[max];
+  for (std::uint32_t i = 0; i < count; ++i) {
     std::uint32_t smaller = i;
     for (std::uint32_t j = 0; j < i; ++j) {
-      const std::uint32_t after = copy[i] < copy[j];
+      const std::uint32_t after = keys[i] < keys[j];
       smaller -= after;
       rank[j] += after;
     }
     rank[i] = smaller;
   }
-  for (std::size_t i = 0; i < keys.size(); ++i) keys[rank[i]] = copy[i];
+  for (std::size_t i = 0; i < count; ++i) sorted[rank[i]] = keys[i];
 }
 
 void sort(std::vector<EventKey>& keys) {
-  if (keys.size() <= rank_max) return sort_by_rank(keys);
   if (!std::is_sorted(keys.begin(), keys.end())) std::sort(keys.begin(), keys.end());
 }
 
@@ -75,10 +72,10 @@ void EventOrder::add_chunk(Bucket& chain) {
     added = static_cast<std::uint32_t>(chunks_.size());
     chunks_.emplace_back();
   }
-  chunks_[added].count = 0;
   chunks_[added].next = none;
   (chain.last == none ? chain.first : chunks_[chain.last].next) = added;
   chain.last = added;
+  chain.in_last = 0;
 }
 
 // Into the span of `sorted`.
@@ -111,8 +108,15 @@ void EventOrder::refill() {
 bool EventOrder::sort_next_bucket() {
   while (current_ < buckets_used_ && buckets_[current_].first == none) ++current_;
   if (current_ == buckets_used_) return false;
-  drain(buckets_[current_], &sorted_);
-  sort(sorted_);
+  Bucket& bucket = buckets_[current_];
+  if (bucket.first == bucket.last) {  // the usual case: one chunk
+    sorted_.resize(bucket.in_last);
+    sort_by_rank(chunks_[bucket.first].keys, bucket.in_last, sorted_.data());
+    free_first_chunk(bucket);
+  } else {
+    drain(bucket, &sorted_);
+    sort(sorted_);
+  }
   changed_ = true;
   return true;
 }
@@ -120,8 +124,9 @@ bool EventOrder::sort_next_bucket() {
 EventOrder::Ahead EventOrder::ahead() const {
   Ahead ahead{std::span(sorted_).subspan(next_), {}};
   if (current_ + 1 < buckets_used_ && buckets_[current_ + 1].first != none) {
-    const Chunk& chunk = chunks_[buckets_[current_ + 1].first];
-    ahead.after = std::span(chunk.keys).first(chunk.count);
+    const Bucket& after = buckets_[current_ + 1];
+    ahead.after = std::span(chunks_[after.first].keys)
+                      .first(after.first == after.last ? after.in_last : chunk_keys);
   }
   return ahead;
 }
@@ -174,17 +179,22 @@ void EventOrder::spread_top() {
   top_.resize(kept);
 }
 
+void EventOrder::free_first_chunk(Bucket& bucket) {
+  const std::uint32_t freed = bucket.first;
+  bucket.first = chunks_[freed].next;
+  if (bucket.first == none) bucket = Bucket();
+  chunks_[freed].next = free_chunk_;
+  free_chunk_ = freed;
+}
+
 // Hands all keys of a bucket on, in order of insertion.
 void EventOrder::drain(Bucket& bucket, std::vector<EventKey>* into) {
   while (bucket.first != none) {
-    Chunk& chunk = chunks_[bucket.first];
-    into->insert(into->end(), chunk.keys, chunk.keys + chunk.count);
-    const std::uint32_t next = chunk.next;
-    chunk.next = free_chunk_;
-    free_chunk_ = bucket.first;
-    bucket.first = next;
+    const EventKey* const keys = chunks_[bucket.first].keys;
+    const std::size_t count = bucket.first == bucket.last ? bucket.in_last : chunk_keys;
+    into->insert(into->end(), keys, keys + count);
+    free_first_chunk(bucket);
   }
-  bucket.last = none;
 }
 
 // Throws everything back into the top.

@@ -107,15 +107,17 @@ class EventOrder {
  private:
   static constexpr std::uint32_t none = UINT32_MAX;
   static constexpr std::size_t chunk_keys = 7;
-  // Buckets are chains of chunks from one pool, in order of insertion.
+  // Buckets are chains of chunks from one pool, in order of insertion; all are full but the last.
+  // How many keys that one has stands in the bucket, so that a push only writes to a chunk and need
+  // not wait for it to come into the cache.
   struct Chunk {
     EventKey keys[chunk_keys];
-    std::uint32_t count;
     std::uint32_t next;
   };
   struct Bucket {
     std::uint32_t first = none;
     std::uint32_t last = none;
+    std::uint32_t in_last = chunk_keys;
   };
 
   bool late_first() const {
@@ -128,9 +130,8 @@ class EventOrder {
   }
   void put(std::size_t bucket, EventKey key) {
     Bucket& chain = buckets_[bucket];
-    if (chain.last == none || chunks_[chain.last].count == chunk_keys) add_chunk(chain);
-    Chunk& chunk = chunks_[chain.last];
-    chunk.keys[chunk.count++] = key;
+    if (chain.in_last == chunk_keys) add_chunk(chain);
+    chunks_[chain.last].keys[chain.in_last++] = key;
   }
   EventKey pop_late();
   void push_near(EventKey key);
@@ -139,6 +140,7 @@ class EventOrder {
   bool sort_next_bucket();
   void sort_top();
   void spread_top();
+  void free_first_chunk(Bucket& bucket);
   void drain(Bucket& bucket, std::vector<EventKey>* into);
   void gather();
   void note_first();

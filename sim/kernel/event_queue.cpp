@@ -4,7 +4,7 @@ namespace hearsay {
 
 namespace {
 
-// Below this many keys throwing out dead ones is not worth its call.
+// Below this many dead keys throwing them out is not worth its call.
 constexpr std::size_t retain_from = 64;
 // Of fewer events the objects on which they act are in the cache anyway.
 constexpr std::size_t fetch_from = 2048;
@@ -16,16 +16,12 @@ bool EventQueue::cancel(EventId id) {
   if (node >= nodes_.size() || nodes_[node].name != id.name) return false;
   // The callable dies at the end, with the queue in order again: its destructor may come back here.
   const Callback dying = release(node);
-  if (order_.size() >= retain_from && order_.size() / 2 > size_) {
+  ++dead_;
+  if (dead_ >= retain_from && dead_ > order_.size() / 2) {
     order_.retain([this](const EventKey& key) { return alive(key); });
+    dead_ = 0;
   }
   return true;
-}
-
-Time EventQueue::next_time() {
-  require(size_ > 0, "the time of the next event was asked of an empty queue");
-  while (!alive(order_.front())) order_.pop();
-  return Time::nanoseconds(order_.front().time_ns);
 }
 
 // Nodes of the bucket after the next, which will be here when that bucket is the next; of the next

@@ -60,19 +60,27 @@ class EventQueue {
     first_free_ = node.next_free;
     node.name = next_name(phase, taken);
     order_.push({time.nanoseconds(), node.name});
-    ++size_;
     return {node.name};
   }
 
   /// Takes back an event that has not happened. @return false if it has, or was cancelled already.
   bool cancel(EventId id);
 
-  bool empty() const { return size_ == 0; }
+  bool empty() const { return size() == 0; }
   /// Number of live events.
-  std::size_t size() const { return size_; }
+  std::size_t size() const { return order_.size() - dead_; }
 
   /// Time of the first event. The queue must not be empty.
-  Time next_time();
+  Time next_time() {
+    require(!empty(), "the time of the next event was asked of an empty queue");
+    EventKey first = order_.front();
+    while (!alive(first)) {
+      --dead_;
+      order_.pop();
+      first = order_.front();
+    }
+    return Time::nanoseconds(first.time_ns);
+  }
 
   struct Event {
     Time time;
@@ -81,9 +89,12 @@ class EventQueue {
   };
   /// Removes and returns the first event. The queue must not be empty.
   Event pop() {
-    require(size_ > 0, "an event was taken from an empty queue");
+    require(!empty(), "an event was taken from an empty queue");
     EventKey key = order_.pop();
-    while (!alive(key)) key = order_.pop();
+    while (!alive(key)) {
+      --dead_;
+      key = order_.pop();
+    }
     if (order_.looks_ahead()) fetch_ahead();
     return {Time::nanoseconds(key.time_ns), static_cast<Phase>(key.order >> phase_shift),
             release(node_of(key.order))};
@@ -107,7 +118,6 @@ class EventQueue {
   }
   Callback release(std::uint32_t node) {
     Node& freed = nodes_[node];
-    --size_;
     freed.name = UINT64_MAX;
     freed.next_free = first_free_;
     first_free_ = node;
@@ -120,7 +130,7 @@ class EventQueue {
   std::vector<Node> nodes_;
   std::uint32_t first_free_ = no_node;
   std::uint64_t next_sequence_ = 0;
-  std::size_t size_ = 0;
+  std::size_t dead_ = 0;  // keys of events that were taken back
 };
 
 }  // namespace hearsay

@@ -72,7 +72,9 @@ class [[nodiscard]] Sleep {
       : simulation_(simulation), until_(until), phase_(phase) {}
   Sleep(const Sleep&) = delete;
   Sleep& operator=(const Sleep&) = delete;
-  ~Sleep() { simulation_.cancel(event_); }
+  ~Sleep() {
+    if (event_ != EventId()) simulation_.cancel(event_);
+  }
 
   bool await_ready() const noexcept { return false; }
   void await_suspend(Process::Handle handle);

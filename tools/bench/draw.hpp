@@ -9,20 +9,39 @@
 
 namespace hearsay::bench {
 
-/// The first two words of draw `count` of generator `who`, as numbers in (0, 1].
-struct Draw {
+/// Two numbers in (0, 1] from block `count` of generator `who`.
+struct Pair {
   double first;
   double second;
 };
-inline Draw draw(std::uint64_t count, std::uint32_t who) {
+inline Pair draw(std::uint64_t count, std::uint32_t who) {
   const auto word = r123::Philox4x32()(
       {{static_cast<std::uint32_t>(count), static_cast<std::uint32_t>(count >> 32)}}, {{1, who}});
-  return {(word[0] + 1.0) * 0x1p-32, (word[1] + 1.0) * 0x1p-32};
+  const auto number = [](std::uint32_t high, std::uint32_t low) {
+    return (static_cast<double>(((std::uint64_t{high} << 32) | low) >> 11) + 1.0) * 0x1p-53;
+  };
+  return {number(word[0], word[1]), number(word[2], word[3])};
 }
 
-/// Exponential with mean 1 s, in ns.
-inline std::int64_t exponential_ns(std::uint64_t count, std::uint32_t who) {
-  return static_cast<std::int64_t>(-std::log(draw(count, who).first) * 1e9);
+/// Exponential with mean 1 s, in ns, from a number in (0, 1].
+inline std::int64_t exponential_ns(double uniform) {
+  return static_cast<std::int64_t>(-std::log(uniform) * 1e9);
 }
+
+/// One number after the other, two of each block.
+class Draws {
+ public:
+  double next() {
+    left_ = !left_;
+    if (!left_) return pair_.second;
+    pair_ = draw(count_++, 0);
+    return pair_.first;
+  }
+
+ private:
+  std::uint64_t count_ = 0;
+  Pair pair_{};
+  bool left_ = false;
+};
 
 }  // namespace hearsay::bench

@@ -25,6 +25,8 @@ using hearsay::EventId;
 using hearsay::EventQueue;
 using hearsay::Phase;
 using hearsay::Time;
+using hearsay::bench::Draws;
+using hearsay::bench::exponential_ns;
 using namespace hearsay::literals;
 
 enum class Load { hold, whole_seconds, bimodal, timeouts };
@@ -36,13 +38,12 @@ struct Payload {
   void operator()() const { *sum += value; }
 };
 
-std::int64_t ahead_ns(std::uint64_t& count, Load load) {
-  constexpr std::uint32_t who = 0;
+std::int64_t ahead_ns(Draws& draws, Load load) {
   if (load == Load::bimodal) {
-    const hearsay::bench::Draw draw = hearsay::bench::draw(count++, who);
-    return static_cast<std::int64_t>(draw.first * (draw.second < 0.9 ? 1e3 : 1e11));
+    const double longest_ns = draws.next() < 0.9 ? 1e3 : 1e11;
+    return static_cast<std::int64_t>(draws.next() * longest_ns);
   }
-  const std::int64_t span_ns = hearsay::bench::exponential_ns(count++, who);
+  const std::int64_t span_ns = exponential_ns(draws.next());
   constexpr std::int64_t second_ns = 1'000'000'000;
   return load == Load::whole_seconds ? (span_ns + second_ns / 2) / second_ns * second_ns : span_ns;
 }
@@ -64,11 +65,11 @@ struct FloorQueue {
   void push(std::int64_t time_ns, Payload payload) { queue.push({time_ns, sequence++, payload}); }
 
   template <Load load>
-  void turn(std::uint64_t& drawn) {
+  void turn(Draws& draws) {
     const Entry entry = queue.top();
     queue.pop();
     entry.payload();
-    push(entry.time_ns + ahead_ns(drawn, load), {1, entry.payload.sum});
+    push(entry.time_ns + ahead_ns(draws, load), {1, entry.payload.sum});
   }
 };
 
@@ -83,10 +84,10 @@ struct OurQueue {
   }
 
   template <Load load>
-  void turn(std::uint64_t& drawn) {
+  void turn(Draws& draws) {
     EventQueue::Event event = queue.pop();
     event.callback();
-    push((event.time + Duration::nanoseconds(ahead_ns(drawn, load))).nanoseconds(), {1, sum});
+    push((event.time + Duration::nanoseconds(ahead_ns(draws, load))).nanoseconds(), {1, sum});
     if constexpr (load == Load::timeouts) {
       queue.cancel(timeout);
       timeout = queue.push(event.time + 3_s, Phase::act, Payload{0, sum});
@@ -97,12 +98,12 @@ struct OurQueue {
 template <class Queue, Load load>
 void hold(benchmark::State& state, int pending) {
   Queue queue;
-  std::uint64_t drawn = 0;
+  Draws draws;
   std::uint64_t sum = 0;
-  for (int i = 0; i < pending; ++i) queue.push(ahead_ns(drawn, load), {1, &sum});
+  for (int i = 0; i < pending; ++i) queue.push(ahead_ns(draws, load), {1, &sum});
   // As many turns as events: what is timed is the steady state.
-  for (int i = 0; i < pending; ++i) queue.template turn<load>(drawn);
-  for (auto _ : state) queue.template turn<load>(drawn);
+  for (int i = 0; i < pending; ++i) queue.template turn<load>(draws);
+  for (auto _ : state) queue.template turn<load>(draws);
   benchmark::DoNotOptimize(sum);
   state.SetItemsProcessed(state.iterations());
 }

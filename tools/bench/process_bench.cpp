@@ -20,6 +20,7 @@ using hearsay::AgentId;
 using hearsay::Duration;
 using hearsay::Process;
 using hearsay::Simulation;
+using hearsay::bench::draw;
 using hearsay::bench::exponential_ns;
 
 constexpr std::uint64_t wake_ups = 1'000'000;
@@ -70,7 +71,7 @@ class BareSleep {
 
 Bare sleep_barely(Heap& heap, std::uint32_t who, std::uint64_t& count) {
   for (std::uint64_t turn = 0;; ++turn) {
-    const std::int64_t span_ns = exponential_ns(turn, who);
+    const std::int64_t span_ns = exponential_ns(draw(turn, who).first);
     co_await BareSleep(heap, span_ns);
     ++count;
   }
@@ -101,7 +102,7 @@ void floor_processes(benchmark::State& state) {
 
 Process sleep_well(Simulation& simulation, std::uint32_t who, std::uint64_t& count) {
   for (std::uint64_t turn = 0;; ++turn) {
-    const Duration span = Duration::nanoseconds(exponential_ns(turn, who));
+    const Duration span = Duration::nanoseconds(exponential_ns(draw(turn, who).first));
     co_await hearsay::sleep(simulation, span);
     ++count;
   }

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""How cost grows: CPU time against agents and against simulated time, memory against simulated time.
+"""Whole runs: how fast the rumour study is swept, how CPU time grows with agents and simulated time, and
+memory with simulated time.
 
 Usage: scaling.py HEARSAY [--hour]     writes Markdown; --hour adds an hour of 10,000 agents (minutes)
 """
@@ -9,12 +10,17 @@ import resource
 import statistics
 import subprocess
 import sys
+import tempfile
+import time
 
 import numpy
 
 SPACING_M = 20.0
 REPETITIONS = 3
-SCENARIO = os.path.join(os.path.dirname(os.path.abspath(__file__)), "scale.toml")
+HERE = os.path.dirname(os.path.abspath(__file__))
+SCENARIO = os.path.join(HERE, "scale.toml")
+STUDY = os.path.join(HERE, "../../scenarios/rumour/rumour.study.toml")
+RUNS = 21600  # of the study
 
 
 def run(hearsay, agents, duration_s):
@@ -42,6 +48,31 @@ def exponent(sizes, times):
     return numpy.polyfit(numpy.log(sizes), numpy.log(times), 1)[0]
 
 
+def sweep(hearsay, jobs, database):
+    """Runs a second of the rumour study, every cell and repetition."""
+    for suffix in ("", "-wal", "-shm"):
+        if os.path.exists(database + suffix):
+            os.remove(database + suffix)
+    begin = time.monotonic()
+    subprocess.run([hearsay, "sweep", STUDY, "--jobs", str(jobs), "--out", database], check=True,
+                   capture_output=True)
+    return RUNS / (time.monotonic() - begin)
+
+
+def sweeps(hearsay):
+    rates = {1: [], 2: []}
+    with tempfile.TemporaryDirectory() as scratch:
+        for _ in range(REPETITIONS):
+            for jobs in rates:
+                rates[jobs].append(sweep(hearsay, jobs, os.path.join(scratch, "rumour.db")))
+    one, two = (statistics.median(rates[jobs]) for jobs in (1, 2))
+    spread = ", ".join(f"{b / a:.2f}" for a, b in zip(rates[1], rates[2]))
+    print("\n## The rumour study\n")
+    print(f"All {RUNS:,} runs into a database: {one:.0f} runs a second with `--jobs 1`, {two:.0f} with "
+          f"`--jobs 2` on two processors, {two / one:.2f} times as many (medians of {REPETITIONS}, taken in "
+          f"turn; pair by pair {spread}).")
+
+
 def section(title, unit, sizes, times):
     print(f"\n{title}: exponent {exponent(sizes, times):.3f} "
           f"(least squares of log time on log {unit}).\n")
@@ -52,6 +83,7 @@ def section(title, unit, sizes, times):
 
 def main():
     hearsay = sys.argv[1]
+    sweeps(hearsay)
     start_s = cpu_s(hearsay, 2, 0.001)  # what a process costs that does nothing; taken off below
     print("\n## How cost grows\n")
     print("`tools/bench/scale.toml`: agents 20 m apart on a ring, six in range of each, that look at "

@@ -1,26 +1,13 @@
-// A fleet that talks allocates nothing a packet once it is warm. (Operator new is counted in the
-// whole of this executable.)
+// A fleet that talks allocates nothing a packet once it is warm.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <new>
-
 #include "agents/estimator_agent.hpp"
-
-namespace {
-std::size_t allocations = 0;
-}
-
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size ? size : 1)) return memory;
-  throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+#include "tools/memory/memory.hpp"
 
 namespace hearsay {
 namespace {
+
+using memory::allocations;
 
 /// Allocations between 60 s and 119 s of a fleet of five on a full graph that talks every second.
 std::size_t allocations_of(gaussian::Rule rule, bool ledger, bool measures) {
@@ -48,8 +35,8 @@ std::size_t allocations_of(gaussian::Rule rule, bool ledger, bool measures) {
   witness.start();
   for (const auto& agent : agents) agent->start();
   std::size_t before = 0, after = 0;
-  simulation.schedule(Time::at(60_s), Phase::observe, [&] { before = allocations; });
-  simulation.schedule(Time::at(119_s), Phase::observe, [&] { after = allocations; });
+  simulation.schedule(Time::at(60_s), Phase::observe, [&] { before = allocations(); });
+  simulation.schedule(Time::at(119_s), Phase::observe, [&] { after = allocations(); });
   EXPECT_TRUE(simulation.run().ok());
   EXPECT_GT(agents[0]->estimator().counts().fusions, 300u);
   return after - before;

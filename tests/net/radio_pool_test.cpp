@@ -1,27 +1,13 @@
 // What the radio keeps: slots and buffers used again, riders held and let go, the same run twice.
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstdlib>
-#include <new>
-
 #include "tests/net/bed.hpp"
-
-namespace {
-std::atomic<std::uint64_t> allocations{0};
-}
-
-// Every allocation of this binary is counted.
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size ? size : 1)) return memory;
-  throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+#include "tools/memory/memory.hpp"
 
 namespace hearsay {
 namespace {
+
+using memory::allocations;
 
 class CountedRider final : public Rider {
  public:
@@ -74,11 +60,11 @@ TEST(RadioPool, NothingIsAllocatedInSteadyState) {
   for (const std::size_t i : {0u, 1u}) {
     simulation.schedule(Time::at(2_s + 4_s * static_cast<int>(i)), Phase::observe,
                         [&counted, &heard, &agents, i] {
-                          counted[i] = allocations;
+                          counted[i] = allocations();
                           for (const auto& agent : agents) heard[i] += agent->heard;
                         });
   }
-  const std::uint64_t before = allocations;
+  const std::uint64_t before = allocations();
   simulation.run();
   radio.finish();
   EXPECT_GT(counted[0], before) << "the counter does not count";

@@ -22,7 +22,7 @@
 #include "sim/kernel/random.hpp"
 #include "sim/kernel/simulation.hpp"
 #include "sim/record/digest.hpp"
-#include "tools/bench/memory.hpp"
+#include "tools/memory/memory.hpp"
 
 namespace hearsay {
 namespace {
@@ -148,7 +148,7 @@ Outcome run_ours(const Layout& layout) {
   std::vector<Beacon> beacons;
   beacons.reserve(static_cast<std::size_t>(agents));  // each stays where it is
   Xxh3Digest digest;
-  const std::size_t bytes_before = bench::bytes_held();
+  const std::size_t bytes_before = memory::bytes_held();
   std::size_t bytes = 0;
   Simulation simulation({.seed = seed, .end = end, .record = {.digest = &digest}});
   Radio radio(simulation, layout.topology,
@@ -161,7 +161,7 @@ Outcome run_ours(const Layout& layout) {
                         [beacon = &beacons.back()] { beacon->talk(); });
   }
   simulation.schedule(Time::at(end.since_start() / 2), Phase::observe,
-                      [&bytes, bytes_before] { bytes = bench::bytes_held() - bytes_before; });
+                      [&bytes, bytes_before] { bytes = memory::bytes_held() - bytes_before; });
   simulation.run();
   radio.finish();
   simulation.record().finish();

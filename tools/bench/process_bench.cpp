@@ -12,7 +12,7 @@
 
 #include "sim/kernel/process.hpp"
 #include "tools/bench/draw.hpp"
-#include "tools/bench/memory.hpp"
+#include "tools/memory/memory.hpp"
 
 namespace {
 
@@ -116,7 +116,7 @@ void our_processes(benchmark::State& state) {
     state.PauseTiming();
     {
       // Their beginnings are events, too.
-      const std::size_t before = hearsay::bench::bytes_held();
+      const std::size_t before = hearsay::memory::bytes_held();
       Simulation simulation({.events_max = wake_ups + pending});
       std::vector<Process> all;
       for (std::uint32_t i = 0; i < state.range(0); ++i) {
@@ -126,7 +126,7 @@ void our_processes(benchmark::State& state) {
       state.ResumeTiming();
       benchmark::DoNotOptimize(simulation.run().events);
       state.PauseTiming();
-      bytes = static_cast<double>(hearsay::bench::bytes_held() - before) /
+      bytes = static_cast<double>(hearsay::memory::bytes_held() - before) /
               static_cast<double>(state.range(0));
     }
     state.ResumeTiming();

@@ -1,34 +1,23 @@
-// Counts what the kernel allocates. This executable replaces operator new.
+// Counts what the kernel allocates.
 #include <gtest/gtest.h>
 
 #include <cstddef>
-#include <cstdlib>
-#include <new>
 #include <vector>
 
 #include "sim/kernel/mailbox.hpp"
 #include "sim/kernel/process.hpp"
-
-namespace {
-std::size_t allocations = 0;
-}
-
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+#include "tools/memory/memory.hpp"
 
 namespace hearsay {
 namespace {
 
+using memory::allocations;
+
 TEST(Allocation, IsCountedHere) {
-  const std::size_t before = allocations;
+  const std::size_t before = allocations();
   auto* volatile number = new int(3);
   delete number;
-  EXPECT_EQ(allocations, before + 1);
+  EXPECT_EQ(allocations(), before + 1);
 }
 
 TEST(Allocation, TheQueueNeedsNoneInSteadyState) {
@@ -49,9 +38,9 @@ TEST(Allocation, TheQueueNeedsNoneInSteadyState) {
   };
   for (int i = 0; i < 1000; ++i) push(Duration::seconds(stream.exponential(1.0)));
   for (int i = 0; i < 5000; ++i) turn();
-  const std::size_t before = allocations;
+  const std::size_t before = allocations();
   for (int i = 0; i < 50'000; ++i) turn();
-  EXPECT_EQ(allocations, before);
+  EXPECT_EQ(allocations(), before);
   EXPECT_EQ(sum, 6.0 * 55'000);
 }
 
@@ -96,8 +85,8 @@ TEST(Allocation, SleepingAndWaitingProcessesNeedNone) {
   for (Process& process : processes) process.start(simulation, 0);
   std::size_t before = 0;
   std::size_t after = 1;
-  simulation.schedule(Time::at(10_s), Phase::act, [&before] { before = allocations; });
-  simulation.schedule(Time::at(100_s), Phase::observe, [&after] { after = allocations; });
+  simulation.schedule(Time::at(10_s), Phase::act, [&before] { before = allocations(); });
+  simulation.schedule(Time::at(100_s), Phase::observe, [&after] { after = allocations(); });
   EXPECT_EQ(simulation.run().reason, EndReason::time_reached);
   EXPECT_EQ(after, before);
   EXPECT_GT(wakes, 9'000);
@@ -114,9 +103,9 @@ TEST(Allocation, DigestingFatesNeedsNone) {
   Nowhere sink;
   Record record({.digest = &sink});
   const MessageRow row{Time(), Time(), 0, 1, record.name("belief"), 60, record.name("lost")};
-  const std::size_t before = allocations;
+  const std::size_t before = allocations();
   for (int i = 0; i < 10'000; ++i) record.message(row);
-  EXPECT_EQ(allocations, before);
+  EXPECT_EQ(allocations(), before);
   EXPECT_GT(sink.count, 500'000u);
 }
 

@@ -1,13 +1,14 @@
-// What a benchmark's program holds and asks for: linking this library replaces operator new.
+// What a program holds and asks for, for tests and benchmarks: linking this library replaces
+// operator new.
 #pragma once
 
 #include <cstddef>
 
-namespace hearsay::bench {
+namespace hearsay::memory {
 
 /// Calls of operator new so far.
 std::size_t allocations();
 /// Bytes held now, as the C library has rounded them.
 std::size_t bytes_held();
 
-}  // namespace hearsay::bench
+}  // namespace hearsay::memory

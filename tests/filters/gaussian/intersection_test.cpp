@@ -25,15 +25,7 @@ double reference(bool trace, const Eigen::MatrixXd& a, const Eigen::MatrixXd& b)
     const Eigen::MatrixXd inverse = (omega * a + (1 - omega) * b).inverse();
     return trace ? (inverse * (a - b) * inverse).trace() : (inverse * (a - b)).trace();
   };
-  if (slope(0) <= 0) return 0;
-  if (slope(1) >= 0) return 1;
-  double low = 0;
-  double high = 1;
-  for (int i = 0; i < 60; ++i) {
-    const double middle = 0.5 * (low + high);
-    (slope(middle) > 0 ? low : high) = middle;
-  }
-  return low;
+  return zero_of_falling(slope);
 }
 
 void expect_omega(const Intersection& intersection, double omega, double within = 1e-12) {

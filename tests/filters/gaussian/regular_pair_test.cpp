@@ -45,15 +45,7 @@ class LogDeterminant {
     const auto slope = [this](double omega) {
       return (k_.array() / (1 + (2 * omega - 1) * k_.array())).sum();
     };
-    if (slope(0) <= 0) return 0;
-    if (slope(1) >= 0) return 1;
-    double low = 0;
-    double high = 1;
-    for (int i = 0; i < 60; ++i) {
-      const double middle = 0.5 * (low + high);
-      (slope(middle) > 0 ? low : high) = middle;
-    }
-    return low;
+    return zero_of_falling(slope);
   }
 
  private:

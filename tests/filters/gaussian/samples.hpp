@@ -29,6 +29,21 @@ inline Vector vector(std::initializer_list<double> values) {
   return v;
 }
 
+/// Where a slope that falls with ω crosses zero on [0, 1], to the last digits; the nearer end if it
+/// does not.
+template <typename Slope>
+double zero_of_falling(const Slope& slope) {
+  if (slope(0.0) <= 0) return 0;
+  if (slope(1.0) >= 0) return 1;
+  double low = 0;
+  double high = 1;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (slope(middle) > 0 ? low : high) = middle;
+  }
+  return low;
+}
+
 inline Matrix diagonal(std::initializer_list<double> values) { return vector(values).asDiagonal(); }
 
 inline Stream stream(std::string_view purpose) {

@@ -73,7 +73,7 @@ def main():
         floor = statistics.median(rates["/".join(filter(None, (FLOOR_OF.get(kind, kind), size)))]["floor"])
         ours = statistics.median(rates[workload]["ours"])
         goal = "" if GOALS[workload] is None else f"{GOALS[workload]:.2f}"
-        notes = ", ".join(f"{value:.0f} {name.replace('_per_', ' a ').replace('/', ' a ').replace(' a agent', ' an agent')}"
+        notes = ", ".join(f"{value:.0f} {name.replace('_per_', ' a ').replace('/', ' a ').replace(' a agent', ' an agent').replace(' a agent', ' an agent')}"
                           for name, value in counters.get(workload, {}).items())
         print(f"| {workload} | {floor / 1e6:.2f} | {ours / 1e6:.2f} | {ours / floor:.2f} | {goal} | {notes} |")
     missing = sorted(set(rates) - set(GOALS))

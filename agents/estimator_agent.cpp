@@ -11,7 +11,8 @@ EstimatorAgent::EstimatorAgent(Context& context, Witness& witness, Options optio
       estimator_({.rule = options_.rule,
                   .subjects = options_.subjects,
                   .dimension = options_.dimension,
-                  .ledgers = witness.ledgers()},
+                  .ledgers = witness.ledgers(),
+                  .workspace = &witness.workspace()},
                  context.neighbours()),
       message_kind_(context.simulation().record().name("gaussian")) {
   witness_.watch(context.id(), estimator_);

@@ -41,6 +41,8 @@ class Witness {
 
   /// For estimators: where their ledgers come from; nullptr if ledgers are off.
   LedgerPool* ledgers() { return options_.ledger ? &pool_ : nullptr; }
+  /// For estimators: shared by all of the run.
+  EstimatorWorkspace& workspace() { return workspace_; }
 
   /// Schedules the samples up to the end of the run. Once, before it starts.
   void start();
@@ -77,6 +79,7 @@ class Witness {
   std::array<NameId, series_metric_count> metric_names_{};
   std::vector<NameId> subject_names_;
   LedgerPool pool_;
+  EstimatorWorkspace workspace_;
   std::vector<MeasurementBook> books_;  // by subject
   std::vector<TrackedBelief> central_;  // by subject
   std::vector<Watched> watched_;

@@ -29,10 +29,13 @@ RiderPtr LedgerPool::make(LedgerRider*& rider) {
 
 StaticGaussianEstimator::StaticGaussianEstimator(const Options& options,
                                                  std::span<const AgentId> neighbours)
-    : options_(options), rule_(gaussian::info(options.rule)) {
+    : options_(options), rule_(gaussian::info(options.rule)), workspace_(options.workspace) {
+  if (workspace_ == nullptr) {
+    own_workspace_ = std::make_unique<EstimatorWorkspace>();
+    workspace_ = own_workspace_.get();
+  }
   const auto subjects = static_cast<std::size_t>(options.subjects);
   own_.assign(subjects, unknown(options.dimension));
-  received_ = unknown(options.dimension);
   for (const AgentId id : neighbours) {
     Neighbour neighbour{.id = id, .memory = {}};
     if (rule_.memory != Memory::nothing) {
@@ -58,11 +61,12 @@ StaticGaussianEstimator::Speech StaticGaussianEstimator::speech(AgentId neighbou
   Speech speech;
   if (keeps_ledger()) speech.rider = options_.ledgers->make(rider);
 
+  gaussian::Message& message = workspace_->outgoing;
   std::size_t spoken = 0;
-  outgoing_.beliefs.resize(own_.size());
+  message.beliefs.resize(own_.size());
   if (rider) rider->ledgers.resize(own_.size());
   for (std::size_t s = 0; s < own_.size(); ++s) {
-    gaussian::BeliefEntry& entry = outgoing_.beliefs[spoken];
+    gaussian::BeliefEntry& entry = message.beliefs[spoken];
     entry.subject = static_cast<std::uint32_t>(s);
     entry.belief = own_[s].belief;
     if (less_heard) entry.belief -= to->memory[s].belief;
@@ -75,12 +79,12 @@ StaticGaussianEstimator::Speech StaticGaussianEstimator::speech(AgentId neighbou
     }
     ++spoken;
   }
-  outgoing_.beliefs.resize(spoken);
+  message.beliefs.resize(spoken);
   if (spoken == 0) return {};
-  outgoing_.incarnation = incarnation_;
-  outgoing_.count = next_count_++;
-  gaussian::encode(outgoing_, bytes_);
-  speech.bytes = bytes_;
+  message.incarnation = incarnation_;
+  message.count = next_count_++;
+  gaussian::encode(message, workspace_->bytes);
+  speech.bytes = workspace_->bytes;
   return speech;
 }
 
@@ -94,23 +98,24 @@ void StaticGaussianEstimator::sent(AgentId neighbour) {
 void StaticGaussianEstimator::heard(AgentId from, std::span<const std::byte> bytes,
                                     const Rider* rider) {
   Neighbour* sender = find(from);
-  if (sender == nullptr || !gaussian::decode(bytes, incoming_) || outdated(*sender, incoming_)) {
+  gaussian::Message& message = workspace_->incoming;
+  if (sender == nullptr || !gaussian::decode(bytes, message) || outdated(*sender, message)) {
     ++counts_.refused;
     return;
   }
   const auto usable = [this](const gaussian::BeliefEntry& entry) {
     return entry.subject < own_.size() && entry.belief.dimension() == options_.dimension;
   };
-  if (!std::all_of(incoming_.beliefs.begin(), incoming_.beliefs.end(), usable)) {
+  if (!std::all_of(message.beliefs.begin(), message.beliefs.end(), usable)) {
     ++counts_.refused;
     return;
   }
   sender->heard = true;
-  sender->incarnation = incoming_.incarnation;
-  sender->count = incoming_.count;
+  sender->incarnation = message.incarnation;
+  sender->count = message.count;
   const auto* ledgers = static_cast<const LedgerRider*>(rider);
-  for (std::size_t i = 0; i < incoming_.beliefs.size(); ++i) {
-    const gaussian::BeliefEntry& entry = incoming_.beliefs[i];
+  for (std::size_t i = 0; i < message.beliefs.size(); ++i) {
+    const gaussian::BeliefEntry& entry = message.beliefs[i];
     fuse(static_cast<int>(entry.subject), *sender, entry.belief,
          ledgers ? &ledgers->ledgers[i] : nullptr);
   }
@@ -136,13 +141,13 @@ void StaticGaussianEstimator::fuse(int subject, Neighbour& from, const Belief& b
   ++counts_.fusions;
   const Belief before = own.belief;
   own.belief *= k.own;
-  received_.belief = belief;
-  received_.belief *= k.received;
-  own.belief += received_.belief;
+  Belief weighted = belief;
+  weighted *= k.received;
+  own.belief += weighted;
   if (memory != nullptr && k.common != 0.0) {
-    received_.belief = memory->belief;
-    received_.belief *= k.common;
-    own.belief -= received_.belief;
+    weighted = memory->belief;
+    weighted *= k.common;
+    own.belief -= weighted;
   }
   if (keeps_ledger() && ledger != nullptr) {
     own.ledger.combine(k.own, k.received, *ledger, k.common, memory ? &memory->ledger : nullptr);

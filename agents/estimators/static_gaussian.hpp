@@ -49,13 +49,21 @@ class LedgerPool {
   std::vector<LedgerRider*> free_;
 };
 
+/// What estimators need only while they speak or hear. One for all agents of a run, so that a
+/// message to the next agent finds it in the cache.
+struct EstimatorWorkspace {
+  gaussian::Message outgoing, incoming;
+  std::vector<std::byte> bytes;
+};
+
 class StaticGaussianEstimator {
  public:
   struct Options {
     gaussian::Rule rule = gaussian::Rule::none;
-    int subjects = 1;               ///< states estimated, ≥ 1
-    int dimension = 2;              ///< of each state, n
-    LedgerPool* ledgers = nullptr;  ///< nullptr: no ledger is kept; not owned
+    int subjects = 1;                         ///< states estimated, ≥ 1
+    int dimension = 2;                        ///< of each state, n
+    LedgerPool* ledgers = nullptr;            ///< nullptr: no ledger is kept; not owned
+    EstimatorWorkspace* workspace = nullptr;  ///< nullptr: one of its own; not owned
   };
   /// `neighbours`: whom a memory is kept for, by number.
   StaticGaussianEstimator(const Options& options, std::span<const AgentId> neighbours);
@@ -66,7 +74,7 @@ class StaticGaussianEstimator {
 
   /// What this estimator has to say now.
   struct Speech {
-    std::span<const std::byte> bytes;  ///< valid until the next call
+    std::span<const std::byte> bytes;  ///< valid until the next call of any with this workspace
     RiderPtr rider;
   };
   /// The message to `neighbour`, or to all of them for no_agent (rules that send one broadcast).
@@ -118,10 +126,8 @@ class StaticGaussianEstimator {
   std::uint32_t incarnation_ = 0;
   std::uint32_t next_count_ = 1;
   Counts counts_;
-  // Reused from call to call.
-  gaussian::Message outgoing_, incoming_;
-  std::vector<std::byte> bytes_;
-  TrackedBelief received_;
+  std::unique_ptr<EstimatorWorkspace> own_workspace_;
+  EstimatorWorkspace* workspace_;
 };
 
 }  // namespace hearsay

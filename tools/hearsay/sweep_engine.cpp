@@ -5,6 +5,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <csignal>
+#include <exception>
 #include <filesystem>
 #include <map>
 #include <mutex>
@@ -90,62 +91,58 @@ struct Outcome {
   std::string input_error;  ///< the scenario of the cell could not be used
 };
 
-/// The conveyor between workers and writer: runs are taken and given back in order.
+/// The runs of a sweep in order: handed out, given back, stored. A worker that gives back a run
+/// stores what has become ready, unless another is storing already; so there is no thread that
+/// only writes, and no processor idles while there are runs.
 class Conveyor {
  public:
-  Conveyor(std::vector<Job> jobs, std::size_t window) : jobs_(std::move(jobs)), window_(window) {}
+  using Store = std::function<void(const Job&, Outcome)>;
+  /// `store` is called in the order of the jobs, by one thread at a time.
+  Conveyor(std::vector<Job> jobs, std::size_t window, Store store)
+      : jobs_(std::move(jobs)), window_(window), store_(std::move(store)) {}
 
-  /// The next job, or nullptr when there is none left. Waits while the writer is too far behind.
+  /// The next job, or nullptr when there is none left. Waits while storing is too far behind.
   const Job* take() {
     std::unique_lock lock(mutex_);
     room_.wait(lock, [&] { return stopped_ || taken_ < stored_ + window_; });
     if (stopped_ || taken_ == jobs_.size()) return nullptr;
     return &jobs_[taken_++];
   }
+  /// @throws what `store` throws.
   void give(const Job* job, Outcome outcome) {
-    const std::scoped_lock lock(mutex_);
-    outcomes_.emplace(static_cast<std::size_t>(job - jobs_.data()), std::move(outcome));
-    // Not for each: without an idle processor the writer would push a worker aside. (next() also
-    // looks by itself now and then.)
-    if (outcomes_.size() >= batch || taken_ == jobs_.size()) news_.notify_one();
-  }
-  /// The outcome of the next job in order, or nothing after the last. Wakes up now and then.
-  std::optional<Outcome> next(const Job*& job, const std::function<bool()>& stop) {
     std::unique_lock lock(mutex_);
-    while (true) {
-      if (stored_ == jobs_.size()) return std::nullopt;
-      const auto found = outcomes_.find(stored_);
-      if (found != outcomes_.end()) {
-        job = &jobs_[stored_++];
-        Outcome outcome = std::move(found->second);
-        outcomes_.erase(found);
-        room_.notify_all();
-        return outcome;
-      }
-      if (stop()) stop_locked();
-      if (stopped_ && stored_ >= taken_) return std::nullopt;
-      news_.wait_for(lock, std::chrono::milliseconds(100));
+    outcomes_.emplace(static_cast<std::size_t>(job - jobs_.data()), std::move(outcome));
+    if (storing_) return;  // whoever stores looks again before it goes
+    storing_ = true;
+    for (auto ready = outcomes_.find(stored_); ready != outcomes_.end();
+         ready = outcomes_.find(stored_)) {
+      Outcome next = std::move(ready->second);
+      outcomes_.erase(ready);
+      lock.unlock();
+      store_(jobs_[stored_], std::move(next));
+      lock.lock();
+      ++stored_;
+      room_.notify_all();
     }
+    storing_ = false;
   }
+  /// No more jobs are handed out; what has been taken is still given back and stored.
   void stop() {
     const std::scoped_lock lock(mutex_);
-    stop_locked();
-  }
-  std::size_t size() const { return jobs_.size(); }
-
- private:
-  void stop_locked() {
     stopped_ = true;
     room_.notify_all();
   }
-  static constexpr std::size_t batch = 8;  // well below the window
-  std::vector<Job> jobs_;
-  std::size_t window_;
+
+ private:
+  const std::vector<Job> jobs_;
+  const std::size_t window_;
+  const Store store_;
   std::mutex mutex_;
-  std::condition_variable room_, news_;
+  std::condition_variable room_;
   std::map<std::size_t, Outcome> outcomes_;
   std::size_t taken_ = 0;
-  std::size_t stored_ = 0;
+  std::size_t stored_ = 0;  ///< written by the one thread that stores, under the mutex
+  bool storing_ = false;
   bool stopped_ = false;
 };
 
@@ -163,6 +160,30 @@ bool work_once(Conveyor& conveyor, const Study& study, const Catalog& catalog, L
   if (job->repetition == study.repetitions) job->cell->release();
   conveyor.give(job, std::move(outcome));
   return true;
+}
+
+/// Calls `work` on so many threads, this one among them, until it returns false, or a signal asks
+/// to stop. @throws the first exception of any of them, after all have ended.
+void run_all(Conveyor& conveyor, int threads, const std::function<bool()>& work) {
+  const StopOnSignal stop_on_signal;
+  std::mutex mutex;
+  std::exception_ptr failure;
+  const auto loop = [&] {
+    try {
+      while (stop_requested == 0 && work()) {
+      }
+    } catch (...) {
+      const std::scoped_lock lock(mutex);
+      if (!failure) failure = std::current_exception();
+    }
+    conveyor.stop();  // for the others: there is none left, or a signal came, or one failed
+  };
+  {
+    std::vector<std::jthread> others;
+    for (int t = 1; t < threads; ++t) others.emplace_back(loop);
+    loop();
+  }
+  if (failure) std::rethrow_exception(failure);
 }
 
 /// A label as the database has it: strings bare, the rest as in the study file.
@@ -267,50 +288,29 @@ SweepSummary sweep_study(const Study& study, const Catalog& catalog, const Sweep
   database.commit();
   summary.present = summary.runs - static_cast<std::int64_t>(jobs.size());
 
+  const auto total = static_cast<std::int64_t>(jobs.size());
+  auto last_commit = Clock::now();
+  const auto store = [&](const Job& job, const Outcome& outcome) {
+    if (!outcome.input_error.empty()) throw InputError(outcome.input_error);
+    database.add(row_of(job, study, outcome.finished), outcome.finished.run->record());
+    ++summary.done;
+    if (!outcome.finished.end.ok() && ++summary.failed == 1) {
+      summary.first_failure = "run " + std::to_string(job.id) + " (" + cell_text(job.cell->cell()) +
+                              "): " + how_it_ended(outcome.finished.end);
+    }
+    if (Clock::now() - last_commit < std::chrono::milliseconds(500)) return;
+    database.commit();
+    last_commit = Clock::now();
+    if (options.progress) options.progress(summary.done, total);
+  };
   const int threads = options.jobs > 0
                           ? options.jobs
                           : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  Conveyor conveyor(std::move(jobs), static_cast<std::size_t>(threads) * 32);
-  const StopOnSignal stop_on_signal;
-  std::vector<std::jthread> workers;
-  const bool alone = threads == 1;  // one job, one thread: it takes turns at running and storing
-  for (int t = 0; t < threads && !alone; ++t) {
-    workers.emplace_back([&] {
-      while (work_once(conveyor, study, catalog, logs)) {
-      }
-    });
-  }
-  auto last_commit = Clock::now();
-  try {
-    const Job* job = nullptr;
-    const auto stop = [] { return stop_requested != 0; };
-    const auto next = [&] {
-      if (alone && !stop()) work_once(conveyor, study, catalog, logs);
-      return conveyor.next(job, stop);
-    };
-    while (auto outcome = next()) {
-      if (!outcome->input_error.empty()) throw InputError(outcome->input_error);
-      database.add(row_of(*job, study, outcome->finished), outcome->finished.run->record());
-      ++summary.done;
-      if (!outcome->finished.end.ok() && ++summary.failed == 1) {
-        summary.first_failure = "run " + std::to_string(job->id) + " (" +
-                                cell_text(job->cell->cell()) +
-                                "): " + how_it_ended(outcome->finished.end);
-      }
-      if (Clock::now() - last_commit < std::chrono::milliseconds(500)) continue;
-      database.commit();
-      last_commit = Clock::now();
-      if (options.progress)
-        options.progress(summary.done, static_cast<std::int64_t>(conveyor.size()));
-    }
-  } catch (...) {
-    conveyor.stop();
-    throw;
-  }
-  workers.clear();
+  Conveyor conveyor(std::move(jobs), static_cast<std::size_t>(threads) * 32, store);
+  run_all(conveyor, threads, [&] { return work_once(conveyor, study, catalog, logs); });
   summary.interrupted = stop_requested != 0;
   database.close();
-  if (options.progress) options.progress(summary.done, static_cast<std::int64_t>(conveyor.size()));
+  if (options.progress) options.progress(summary.done, total);
   summary.wall_s = std::chrono::duration<double>(Clock::now() - begin).count();
   return summary;
 }

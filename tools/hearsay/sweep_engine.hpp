@@ -1,9 +1,8 @@
 // Runs all cells of a study, several at once, into one database.
 //
-// Workers take runs in the order of their ids and one writer stores them in that order (with one
-// job, one thread does both), so a database never holds anything but a prefix of the study (and
-// runs of an earlier call), and ends the same whatever the number of jobs and however often the
-// sweep was interrupted.
+// Workers take runs in the order of their ids and store them in that order (one of them at a
+// time), so a database never holds anything but a prefix of the study (and runs of an earlier
+// call), and ends the same whatever the number of jobs and however often the sweep was interrupted.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +20,7 @@ struct SweepOptions {
   bool retry = false;  ///< run those again that failed before
   /// Called once when everything has been checked, before the database is opened.
   std::function<void()> ready;
-  /// Called now and then on the writing thread: runs stored so far, of how many to do.
+  /// Called now and then, by one thread at a time: runs stored so far, of how many to do.
   std::function<void(std::int64_t stored, std::int64_t total)> progress;
 };
 

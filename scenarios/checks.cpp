@@ -2,54 +2,19 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <numeric>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "scenarios/names.hpp"
-#include "scenarios/reading.hpp"
+#include "scenarios/scenario_under_check.hpp"
 #include "sim/kernel/error.hpp"
 
 namespace hearsay {
 namespace {
 
-// Where `path` is written, or the innermost table around it that is in the file.
-const TomlNode& locate(const TomlNode& root, const KeyPath& path) {
-  if (!path.parent) return root;
-  const TomlNode& around = locate(root, *path.parent);
-  if (path.key.empty()) {
-    const bool inside = path.index < around.children.size();
-    return inside ? around.children[path.index] : around;
-  }
-  const TomlNode* entry = around.find(path.key);
-  return entry ? *entry : around;
-}
-
-std::vector<std::size_t> sorted_by_name(const std::vector<std::string>& names) {
-  std::vector<std::size_t> order(names.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    const int compared = names[a].compare(names[b]);
-    return compared != 0 ? compared < 0 : a < b;
-  });
-  return order;
-}
-
-// The first one whose name an earlier one has, too.
-std::optional<std::size_t> first_duplicate(const std::vector<std::string>& names,
-                                           const std::vector<std::size_t>& order) {
-  std::optional<std::size_t> first;
-  for (std::size_t i = 1; i < order.size(); ++i) {
-    const bool same = names[order[i - 1]] == names[order[i]];
-    if (same && (!first || order[i] < *first)) first = order[i];
-  }
-  return first;
-}
-
 class Checker {
  public:
-  Checker(const TomlNode& root, Scenario& scenario) : root_(root), s_(scenario) {}
+  explicit Checker(ScenarioUnderCheck& file) : file_(file), s_(file.scenario) {}
 
   void all() {
     check_agents();
@@ -57,7 +22,7 @@ class Checker {
     for (std::size_t i = 0; i < s_.agents.size(); ++i) {
       check_agent(s_.agents[i], agents_[i]);
     }
-    check_radio();
+    check_radio(file_);
   }
 
  private:
@@ -67,29 +32,21 @@ class Checker {
   void check_targets();
   void check_agent(const AgentSpec& agent, const KeyPath& path);
   void check_position_sensor(const AgentSpec& agent, const KeyPath& path);
-  void check_radio();
-  void resolve_edges();
-  std::optional<std::size_t> agent_called(const std::string& name) const;
-  int resolve_agent(const TomlNode& end, const KeyPath& path, int given);
 
   [[noreturn]] void fail(const KeyPath& path, const std::string& why) const {
-    reject_key(locate(root_, path).origin, path.text(), why);
+    file_.fail(path, why);
   }
-  static bool placed(const AgentSpec& agent) { return agent.position_m || agent.circle; }
 
-  const TomlNode& root_;
+  ScenarioUnderCheck& file_;
   Scenario& s_;
-  std::vector<std::string> names_;    // of all agents
-  std::vector<std::size_t> by_name_;  // agents sorted by name
   KeyPath top_;
   KeyPath agents_ = top_["agents"];
   KeyPath world_ = top_["world"];
-  KeyPath radio_ = top_["radio"];
 };
 
 void Checker::check_agents() {
   if (s_.agents.empty()) {
-    throw InputError(locate(root_, agents_).origin.text() +
+    throw InputError(file_.locate(agents_).origin.text() +
                      ": there are no [[agents]]; a scenario needs at least one agent");
   }
   std::int64_t count = 0;
@@ -101,8 +58,7 @@ void Checker::check_agents() {
 }
 
 void Checker::check_agent_names() {
-  names_ = agent_names(s_);
-  by_name_ = sorted_by_name(names_);
+  file_.name_agents();
   const auto entry = [&](std::size_t agent) {
     std::size_t i = 0;
     for (; agent >= static_cast<std::size_t>(s_.agents[i].count); ++i) {
@@ -111,22 +67,14 @@ void Checker::check_agent_names() {
     return i;
   };
   for (const char* reserved : {"central", "each", "max", "mean"}) {
-    const auto agent = agent_called(reserved);
+    const auto agent = file_.agent_called(reserved);
     if (!agent) continue;
     fail(agents_[entry(*agent)]["name"],
          std::string("'") + reserved + "' means something else in claims; take another name");
   }
-  if (const auto agent = first_duplicate(names_, by_name_)) {
-    fail(agents_[entry(*agent)]["name"], "two agents are called '" + names_[*agent] + "'");
+  if (const auto agent = first_duplicate(file_.agents())) {
+    fail(agents_[entry(*agent)]["name"], "two agents are called '" + file_.agents()[*agent] + "'");
   }
-}
-
-std::optional<std::size_t> Checker::agent_called(const std::string& name) const {
-  const auto at = std::lower_bound(
-      by_name_.begin(), by_name_.end(), name,
-      [&](std::size_t agent, const std::string& wanted) { return names_[agent] < wanted; });
-  if (at == by_name_.end() || names_[*at] != name) return std::nullopt;
-  return *at;
 }
 
 void Checker::check_world() {
@@ -156,7 +104,7 @@ void Checker::check_targets() {
     if (target.name.empty()) target.name = "target" + std::to_string(i);
     names.push_back(target.name);
   }
-  if (const auto i = first_duplicate(names, sorted_by_name(names))) {
+  if (const auto i = first_duplicate(names)) {
     fail(targets[*i]["name"], "two targets are called '" + names[*i] + "'");
   }
 }
@@ -203,60 +151,11 @@ void Checker::check_position_sensor(const AgentSpec& agent, const KeyPath& path)
   }
 }
 
-void Checker::check_radio() {
-  const RadioSpec& radio = s_.radio;
-  if (radio.loss.model == "none" && radio.loss.probability > 0.0) {
-    fail(radio_["loss"]["probability"],
-         "without effect; set radio.loss.model = \"bernoulli\", too");
-  }
-  if (radio.topology == "edges" && radio.edges.empty()) {
-    fail(radio_["topology"], "\"edges\" needs radio.edges, as [[0, 1], [1, 2]]");
-  }
-  if (radio.topology != "edges" && !radio.edges.empty()) {
-    fail(radio_["edges"], "only for topology = \"edges\"; found \"" + radio.topology + "\"");
-  }
-  resolve_edges();
-  if (radio.propagation_m_per_s && radio.topology != "disk") {
-    fail(radio_["propagation_m_per_s"],
-         "only for topology = \"disk\", which knows how long links are; found \"" + radio.topology +
-             "\"");
-  }
-  if (radio.topology != "disk") return;
-  if (radio.range_m <= 0.0) fail(radio_["topology"], "\"disk\" needs radio.range_m above 0");
-  for (std::size_t i = 0; i < s_.agents.size(); ++i) {
-    if (placed(s_.agents[i])) continue;
-    fail(agents_[i], "topology = \"disk\" needs to know where it stands: position_m or circle");
-  }
-}
-
-void Checker::resolve_edges() {
-  const KeyPath edges = radio_["edges"];
-  for (std::size_t i = 0; i < s_.radio.edges.size(); ++i) {
-    const KeyPath path = edges[i];
-    const TomlNode& node = locate(root_, path);
-    auto& [a, b] = s_.radio.edges[i];
-    a = resolve_agent(node.children[0], path, a);
-    b = resolve_agent(node.children[1], path, b);
-    const int last = s_.agent_count() - 1;
-    for (const int end : {a, b}) {
-      if (end >= 0 && end <= last) continue;
-      const std::string known =
-          last == 0 ? "0 is the only one" : "they are 0 … " + std::to_string(last);
-      reject(node, path, "there is no agent " + std::to_string(end) + "; " + known);
-    }
-    if (a == b) reject(node, path, "joins an agent to itself");
-  }
-}
-
-int Checker::resolve_agent(const TomlNode& end, const KeyPath& path, int given) {
-  if (end.type != TomlNode::Type::string) return given;
-  if (const auto agent = agent_called(end.text)) return static_cast<int>(*agent);
-  const auto near = nearest_name(end.text, names_);
-  reject(end, path, "there is no such agent" + (near ? "; did you mean '" + *near + "'?" : ""));
-}
-
 }  // namespace
 
-void finish(const TomlNode& root, Scenario& scenario) { Checker(root, scenario).all(); }
+void finish(const TomlNode& root, Scenario& scenario) {
+  ScenarioUnderCheck file(root, scenario);
+  Checker(file).all();
+}
 
 }  // namespace hearsay

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "filters/gaussian/fusion.hpp"
+#include "scenarios/describe_radio.hpp"
 #include "scenarios/loader.hpp"
 #include "scenarios/reading.hpp"
 #include "scenarios/scenario.hpp"
@@ -44,30 +45,6 @@ template <class V>
 void describe(V& v, WorldSpec& s) {
   v.table("targets", s.targets, "what there is to be found");
   v.table("log", s.log, "a recorded data set instead of targets and synthetic sensors");
-}
-
-template <class V>
-void describe(V& v, LossSpec& s) {
-  v.field("model", s.model, one_of({"none", "bernoulli"}), "how packets get lost");
-  v.field("probability", s.probability, between(0.0, 1.0), "of losing a packet on a link");
-}
-
-template <class V>
-void describe(V& v, RadioSpec& s) {
-  v.field("topology", s.topology, one_of({"line", "ring", "star", "full", "edges", "disk"}),
-          "who hears whom");
-  v.field("edges", s.edges, anything(), "for \"edges\": pairs of agents, by number or name");
-  v.field("range_m", s.range_m, at_least(0.0), "for \"disk\": who is nearer hears");
-  Allowed rate = greater_than_zero();
-  rate.finest = 1e-3;
-  v.field("rate_bps", s.rate_bps, rate, "bits a second of a transmitter");
-  v.field("header_bytes", s.header_bytes, between(0, 65535), "added to each packet on the air");
-  v.field("queue_packets_max", s.queue_packets_max, between(1, 1e6),
-          "packets waiting or being sent at a transmitter");
-  v.field("latency_s", s.latency_s, time_span(true), "from the last bit sent to arrival");
-  v.field("propagation_m_per_s", s.propagation_m_per_s, greater_than_zero(),
-          "for \"disk\": arrival is later by distance / speed; default: by nothing");
-  v.table("loss", s.loss, "how packets get lost");
 }
 
 template <class V>

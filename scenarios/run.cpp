@@ -1,9 +1,9 @@
 #include "scenarios/run.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
+#include "scenarios/network.hpp"
 #include "sim/kernel/error.hpp"
 
 namespace hearsay {
@@ -40,24 +40,6 @@ std::vector<PositionSensor> position_sensors(const AgentSpec& spec, const WorldS
                                                  .sigma_across_m = across});
   }
   return sensors;
-}
-
-Topology topology_of(const Scenario& scenario,
-                     const std::vector<std::optional<std::array<double, 2>>>& places) {
-  const RadioSpec& radio = scenario.radio;
-  const int agents = scenario.agent_count();
-  if (radio.topology == "line") return Topology::line(agents);
-  if (radio.topology == "ring") return Topology::ring(agents);
-  if (radio.topology == "star") return Topology::star(agents);
-  if (radio.topology == "full") return Topology::full(agents);
-  if (radio.topology == "edges") {
-    std::vector<std::pair<AgentId, AgentId>> edges;
-    for (const auto& [a, b] : radio.edges) edges.emplace_back(a, b);
-    return Topology::edges(agents, edges);
-  }
-  std::vector<std::array<double, 3>> positions;
-  for (const auto& place : places) positions.push_back({place.value()[0], place.value()[1], 0.0});
-  return Topology::disk(positions, radio.range_m);
 }
 
 std::vector<Metric> metrics_of(const RecordSpec& record) {
@@ -98,16 +80,6 @@ void require_subjects(const PreparedScenario& prepared) {
                          "' estimates, but there is nothing to estimate: give [world] targets or "
                          "[world.log]");
   }
-}
-
-RadioOptions radio_options(const RadioSpec& spec) {
-  return {.rate_bps = spec.rate_bps,
-          .header_bytes = static_cast<std::uint32_t>(spec.header_bytes),
-          .queue_packets_max = static_cast<std::uint32_t>(spec.queue_packets_max),
-          .latency = Duration::seconds(spec.latency_s),
-          .loss_probability = spec.loss.model == "bernoulli" ? spec.loss.probability : 0.0,
-          .propagation_m_per_s =
-              spec.propagation_m_per_s.value_or(std::numeric_limits<double>::infinity())};
 }
 
 TalkPhase talk_phase_of(const std::string& name) {

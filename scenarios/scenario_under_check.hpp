@@ -1,0 +1,53 @@
+// A scenario that was read and is being checked: what the checks of its parts share.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scenarios/document.hpp"
+#include "scenarios/reading.hpp"
+#include "scenarios/scenario.hpp"
+
+namespace hearsay {
+
+class ScenarioUnderCheck {
+ public:
+  /// `root` is what `scenario` was read from.
+  ScenarioUnderCheck(const TomlNode& root, Scenario& checked) : scenario(checked), root_(root) {}
+
+  Scenario& scenario;
+
+  /// Where `path` is written, or the innermost table around it that is in the file.
+  const TomlNode& locate(const KeyPath& path) const;
+  /// @throws InputError "ring.toml:12: radio.edges: …".
+  [[noreturn]] void fail(const KeyPath& path, const std::string& why) const {
+    reject_key(locate(path).origin, path.text(), why);
+  }
+
+  /// Once, before the following are asked: takes the names of all agents.
+  void name_agents();
+  const std::vector<std::string>& agents() const { return names_; }
+  std::optional<std::size_t> agent_called(const std::string& name) const;
+  /// The number of the agent that the element `end` at `path` names: by its name, or, `given`, by
+  /// number. @throws InputError if there is none.
+  int resolve_agent(const TomlNode& end, const KeyPath& path, int given) const;
+
+ private:
+  const TomlNode& root_;
+  std::vector<std::string> names_;
+  std::vector<std::size_t> by_name_;  // agents sorted by name
+};
+
+/// True if the file says where such an agent stands.
+inline bool placed(const AgentSpec& agent) { return agent.position_m || agent.circle; }
+
+/// The first one whose name an earlier one has, too.
+std::optional<std::size_t> first_duplicate(const std::vector<std::string>& names);
+
+/// Checks [radio], and finds the numbers of agents in edges.
+/// @throws InputError.
+void check_radio(ScenarioUnderCheck& file);
+
+}  // namespace hearsay

@@ -15,7 +15,7 @@ MAY_INCLUDE = {
     "sim/kernel": ["sim/math"],
     "sim/world": ["sim/kernel", "sim/math"],
     "sim/record": ["sim/kernel"],
-    "net": ["sim/kernel"],
+    "net": ["sim/kernel", "sim/math"],
     "filters": ["sim/math", "sim/kernel/error.hpp"],
     "agents": ["net", "filters", "sim/world", "sim/kernel", "sim/math"],
     "scenarios": ["agents", "net", "filters", "sim/world", "sim/kernel", "sim/math"],

@@ -53,8 +53,8 @@ class Slotted final : public Access {
     } else {
       slot += passed_over(radio);
     }
-    grants_[index(radio)] = simulation_.schedule(
-        Time::at(options_.slot * slot), Phase::update, [this, radio] { user_.granted(radio); });
+    grants_[index(radio)] = simulation_.schedule(Time::at(options_.slot * slot), Phase::update,
+                                                 [this, radio] { user_.granted(radio); });
   }
   void withdraw(AgentId radio) override { simulation_.cancel(grants_[index(radio)]); }
 

@@ -31,7 +31,7 @@ struct AccessOptions {
   /// Carrier sense: added to interframe after something that could not be read, ≥ 0, so that an
   /// acknowledgement that others expect is not disturbed.
   Duration interframe_garbled;
-  int window_min = 16;    ///< carrier sense: the back-off is below this many slots, 1 … 65536, …
+  int window_min = 16;  ///< carrier sense: the back-off is below this many slots, 1 … 65536, …
   int window_max = 1024;  ///< … doubled with each repetition of a frame up to this
 };
 

@@ -5,12 +5,13 @@
 #include <utility>
 
 #include "sim/kernel/error.hpp"
+#include "sim/math/functions.hpp"
 
 namespace hearsay {
 namespace {
 
-constexpr PurposeOnLink jitter_draws{Purpose("jitter of a tick"), Purpose("jitter of a packet")};
-constexpr Purpose acknowledgement_draws("loss of an acknowledgement");
+constexpr PurposeOnLink jitter_draws{Purpose("jitter of a tick"), Purpose("jitter of a packet"),
+                                     Purpose("jitter of a repetition")};
 
 // What takes longer than 9e9 s takes 9e9 s.
 Duration at_most_9e9(double s) { return Duration::seconds(std::min(s, 9e9)); }
@@ -119,9 +120,9 @@ Fate Channel::repeat(const Transmission& t) const {
 bool Channel::acknowledgement_lost(const Transmission& t) const {
   PacketOnLink answer = on_link(t, 0, t.index);
   std::swap(answer.from, answer.to);
-  answer.numbering = t.has_tick ? Numbering::answer_to_tick : Numbering::answer_to_packet;
   answer.repetition = static_cast<std::uint32_t>(t.repetition);
-  return loss_.lost(answer, 1);
+  answer.answer = true;
+  return loss_.lost(answer);
 }
 
 void Channel::launch(Transmission& t) {
@@ -135,12 +136,11 @@ void Channel::draw_jitter(Transmission& t) {
     const std::uint32_t link = t.route.link(i);
     const std::uint64_t index = t.has_tick ? t.index : link_launched_[link]++;
     const PacketOnLink packet = on_link(t, i, index);
-    Stream draws = Stream::at(packet.seed, jitter_draws.of(packet.numbering), packet.link(),
-                              packet.index);
+    FrameDraws draws(packet, jitter_draws);
     const double spread_s = jitter_.spread.seconds();
     const double jitter_s = jitter_.law == JitterOptions::Law::uniform
-                                ? spread_s * draws.uniform()
-                                : spread_s * draws.exponential(1.0);
+                                ? spread_s * draws.next()
+                                : -spread_s * math::log(1.0 - draws.next());
     Duration delay = t.route.delay(i) + at_most_9e9(jitter_s);
     if (!jitter_.reordering) {
       Time& last = link_arrival_[link];

@@ -42,6 +42,9 @@ class Channel {
   void launch(Transmission& t);
   /// What the channel makes of a packet that arrives now.
   Fate on_arrival(const Transmission&, std::size_t) const { return Fate::delivered; }
+  /// How strong the i-th hearer hears a packet, and `to` a frame of `from`.
+  double power_dbm(const Transmission&, std::size_t) const { return 0.0; }
+  double power_dbm(AgentId, AgentId) const { return 0.0; }
 
  private:
   void order_arrivals();

@@ -27,7 +27,9 @@ struct PacketOnLink {
   AgentId from = no_agent;
   AgentId to = no_agent;
   Numbering numbering = Numbering::tick;
-  std::uint64_t index = 0;  ///< below 2^48
+  std::uint64_t index = 0;       ///< below 2^48; 2^36 if it is repeated or acknowledged
+  std::uint32_t repetition = 0;  ///< below 1024; 0: sent for the first time
+  bool answer = false;           ///< the acknowledgement, by from, of what to sent
 
   Entity link() const { return Entity::link(from, to); }
 };
@@ -39,6 +41,7 @@ inline constexpr std::uint32_t frames_max = 131'072;
 struct PurposeOnLink {
   Purpose tick;
   Purpose packet;
+  Purpose again;  ///< repetitions and acknowledgements, which do not shift the others
   Purpose of(Numbering numbering) const { return numbering == Numbering::tick ? tick : packet; }
 };
 
@@ -46,16 +49,27 @@ struct PurposeOnLink {
 class FrameDraws {
  public:
   FrameDraws(const PacketOnLink& packet, const PurposeOnLink& purpose)
-      : stream_(
-            Stream::at(packet.seed, purpose.of(packet.numbering), packet.link(), packet.index)) {}
+      : stream_(again(packet)
+                    ? Stream::at(packet.seed, purpose.again, packet.link(), again_count(packet))
+                    : Stream::at(packet.seed, purpose.of(packet.numbering), packet.link(),
+                                 packet.index)) {}
   double next() { return stream_.uniform(); }
 
+  static bool again(const PacketOnLink& packet) { return packet.repetition > 0 || packet.answer; }
+
  private:
+  static std::uint64_t again_count(const PacketOnLink& packet) {
+    require(packet.repetition < 1024, "radio: a packet is repeated too often");
+    const std::uint64_t numbering = packet.numbering == Numbering::tick ? 0 : 1;
+    const std::uint64_t answer = packet.answer ? 1 : 0;
+    return ((packet.index * 2 + numbering) * 2 + answer) * 1024 + packet.repetition;
+  }
   Stream stream_;
 };
 
 /// The uniform of the packet's first frame: what FrameDraws gives first, cheaper.
 inline double first_frame_draw(const PacketOnLink& packet, const PurposeOnLink& purpose) {
+  if (FrameDraws::again(packet)) return FrameDraws(packet, purpose).next();
   return Stream::uniform_at(packet.seed, purpose.of(packet.numbering), packet.link(), packet.index);
 }
 

@@ -11,9 +11,11 @@ namespace hearsay {
 namespace {
 
 // The first frame's draw is the one that packets have had before there were frames.
-constexpr PurposeOnLink loss{Purpose("loss of a tick"), Purpose("loss of a packet")};
+constexpr PurposeOnLink loss{Purpose("loss of a tick"), Purpose("loss of a packet"),
+                             Purpose("loss of a repetition")};
 constexpr PurposeOnLink state{Purpose("state of the channel at a tick"),
-                              Purpose("state of the channel at a packet")};
+                              Purpose("state of the channel at a packet"),
+                              Purpose("not drawn: the state is the first attempt's")};
 
 template <class... Parts>
 std::string text_of(const Parts&... parts) {

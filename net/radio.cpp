@@ -29,12 +29,12 @@ Radio::Radio(Simulation& simulation, Topology topology, const RadioOptions& opti
       stations_(static_cast<std::size_t>(channel_.agents())),
       access_(make_access(options_.access, simulation, channel_.agents(), *this)) {
   if (!access_ && !options_.half_duplex) return;
-  receptions_ = std::make_unique<Receptions>(
-      channel_.agents(),
-      Receptions::Options{.half_duplex = options_.half_duplex,
-                          .collisions = access_ != nullptr,
-                          .capture_db = options_.capture_db},
-      access_ ? access_->listener() : nullptr);
+  receptions_ =
+      std::make_unique<Receptions>(channel_.agents(),
+                                   Receptions::Options{.half_duplex = options_.half_duplex,
+                                                       .collisions = access_ != nullptr,
+                                                       .capture_db = options_.capture_db},
+                                   access_ ? access_->listener() : nullptr);
 }
 
 Radio::~Radio() {
@@ -249,7 +249,13 @@ void Radio::finish() {
     if (t.end > now) traffic_.sender(t.sender).air_time -= t.end - now;
     settle_rest(slot, Fate::in_flight_at_end);
   }
-  for (Station& station : stations_) simulation_.cancel(station.next);
+  for (AgentId agent = 0; agent < channel_.agents(); ++agent) {
+    Station& s = station(agent);
+    simulation_.cancel(s.next);
+    s.next = EventId();
+    if (access_) access_->withdraw(agent);
+    while (!s.waiting.empty()) s.waiting.pop();
+  }
   for (AgentId sender = 0; sender < channel_.agents(); ++sender) {
     require_balance(sender, counts(sender));
   }

@@ -50,8 +50,6 @@ void check(const RadioOptions& options) {
                  options.latency.seconds());
   require_option(options.jitter.spread >= Duration(), "jitter.spread_s", "at least 0",
                  options.jitter.spread.seconds());
-  require_option(options.loss_probability >= 0.0 && options.loss_probability <= 1.0,
-                 "loss_probability", "in [0, 1]", options.loss_probability);
   require_option(options.propagation_m_per_s > 0.0, "propagation_m_per_s", "greater than 0",
                  options.propagation_m_per_s);
   check(options.acknowledgement);

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "net/access.hpp"
+#include "net/loss.hpp"
 #include "sim/kernel/time.hpp"
 
 namespace hearsay {
@@ -50,12 +51,12 @@ struct RadioOptions {
   QueueOptions queue;
   bool half_duplex = false;  ///< who sends does not hear
   AccessOptions access;
-  /// Where the channel is shared: a frame this much stronger than another survives, in dB; infinite:
-  /// none does. A finite ratio needs positions.
+  /// Where the channel is shared: a frame this much stronger than another survives, in dB;
+  /// infinite: none does. A finite ratio needs positions.
   double capture_db = std::numeric_limits<double>::infinity();
   Duration latency;  ///< ≥ 0, from the last bit sent to arrival
   JitterOptions jitter;
-  double loss_probability = 0.0;  ///< Bernoulli, a packet and link, in [0, 1]
+  Loss loss;
   /// > 0; the way to a hearer takes link length / speed more, to the nearest nanosecond. Infinite:
   /// no time. A finite speed needs positions.
   double propagation_m_per_s = std::numeric_limits<double>::infinity();

@@ -22,9 +22,9 @@ inline void worsen(Fate& fate, Fate other) {
   constexpr auto gravity = [] {
     std::array<std::uint8_t, fate_count> rank{};
     std::uint8_t next = 0;
-    for (const Fate f : {Fate::delivered, Fate::lost, Fate::collided, Fate::jammed,
-                         Fate::half_duplex, Fate::out_of_range, Fate::receiver_down,
-                         Fate::sender_down}) {
+    for (const Fate f :
+         {Fate::delivered, Fate::lost, Fate::collided, Fate::jammed, Fate::half_duplex,
+          Fate::out_of_range, Fate::receiver_down, Fate::sender_down}) {
       rank[static_cast<std::size_t>(f)] = next++;
     }
     return rank;

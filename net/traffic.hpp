@@ -14,11 +14,11 @@ using FateCounts = std::array<std::uint64_t, fate_count>;
 
 /// Sums over a run, for one sender.
 struct SenderCounts {
-  std::uint64_t packets = 0;     ///< handed to the radio
-  std::uint64_t begun = 0;       ///< packets of which sending began
-  std::uint64_t frames = 0;      ///< frames of which sending began, repeated ones too
-  std::uint64_t bytes_sent = 0;  ///< of these frames, with headers, and of acknowledgements
-  std::uint64_t expected = 0;    ///< potential receivers of all packets, summed
+  std::uint64_t packets = 0;           ///< handed to the radio
+  std::uint64_t begun = 0;             ///< packets of which sending began
+  std::uint64_t frames = 0;            ///< frames of which sending began, repeated ones too
+  std::uint64_t bytes_sent = 0;        ///< of these frames, with headers, and of acknowledgements
+  std::uint64_t expected = 0;          ///< potential receivers of all packets, summed
   std::uint64_t acknowledgements = 0;  ///< sent for others
   FateCounts fates{};
   Duration air_time;     ///< time the transmitter was busy

@@ -16,7 +16,7 @@ namespace hearsay {
 
 /// A potential receiver of a packet.
 struct Ear {
-  Duration delay;      ///< later than others by the way there
+  Duration delay;  ///< later than others by the way there
   AgentId agent;
   std::uint32_t link;  ///< its number; of no meaning where links are not numbered
 };
@@ -24,7 +24,8 @@ struct Ear {
 /// Where a packet goes: everybody who may hear, in order of arrival.
 struct Route {
   std::size_t size = 0;
-  const AgentId* neighbours = nullptr;  ///< of whom links go on from first_link; they hear at once …
+  const AgentId* neighbours =
+      nullptr;  ///< of whom links go on from first_link; they hear at once …
   std::uint32_t first_link = 0;
   const Ear* ears = nullptr;  ///< … unless this is not null
   bool reaches = true;        ///< false: addressed to somebody who cannot hear
@@ -43,22 +44,22 @@ inline Time later(Time time, Duration span) {
 }
 
 struct Transmission {
-  std::vector<std::byte> bytes;   // vectors keep their room for the slot's next packet
-  std::vector<Fate> fates;        // of the hearers in order of arrival, as far as known
-  std::vector<Ear> ears;          // if the route is this packet's own
+  std::vector<std::byte> bytes;  // vectors keep their room for the slot's next packet
+  std::vector<Fate> fates;       // of the hearers in order of arrival, as far as known
+  std::vector<Ear> ears;         // if the route is this packet's own
   // Where the channel is shared: who is disturbed by a frame that is not for them. (What would be
   // its fate there is of no interest.)
   std::vector<AgentId> overhearers;
   std::vector<Fate> overheard;
   RiderPtr rider;
-  EventId event;           // the next thing to happen to it, unless that is just happening
-  Time sent, start, end;   // handed over; first bit of this attempt; last bit of what began
-  Time arrives;            // at hearers without a delay of their own
+  EventId event;          // the next thing to happen to it, unless that is just happening
+  Time sent, start, end;  // handed over; first bit of this attempt; last bit of what began
+  Time arrives;           // at hearers without a delay of their own
   Route route;
   std::uint64_t serial = 0;
-  std::uint64_t index = 0;      // its number for draws: the tick if it has one
+  std::uint64_t index = 0;  // its number for draws: the tick if it has one
   std::uint64_t subject = 0;
-  std::size_t settled = 0;      // hearers whose fate is known for good
+  std::size_t settled = 0;  // hearers whose fate is known for good
   AgentId sender = no_agent;
   AgentId receiver = no_agent;  // no_agent: a broadcast
   std::uint32_t frames = 1;

@@ -10,9 +10,6 @@
 namespace hearsay {
 namespace {
 
-// The first frame's draw is the one that packets have had before there were frames.
-constexpr PurposeOnLink loss{Purpose("loss of a tick"), Purpose("loss of a packet"),
-                             Purpose("loss of a repetition")};
 constexpr PurposeOnLink state{Purpose("state of the channel at a tick"),
                               Purpose("state of the channel at a packet"),
                               Purpose("not drawn: the state is the first attempt's")};
@@ -154,16 +151,16 @@ double Loss::frame_loss(const PacketOnLink& packet) const {
   return at == links_.end() || before(wanted, *at) ? probability_ : at->probability;
 }
 
-bool Loss::lost(const PacketOnLink& packet, std::uint32_t frames) const {
+bool Loss::any_lost(const PacketOnLink& packet, std::uint32_t frames) const {
   require(frames <= frames_max, "loss: a packet has too many frames");
   const double p = frame_loss(packet);
   if (p <= 0.0 || frames == 0) return false;
   if (p >= 1.0) return true;
-  if (first_frame_draw(packet, loss) < p) return true;
+  if (first_frame_draw(packet, draws) < p) return true;
   if (frames == 1) return false;
-  FrameDraws draws(packet, loss);
+  FrameDraws of_frames(packet, draws);
   for (std::uint32_t f = 0; f < frames; ++f) {
-    if (draws.next() < p) return true;
+    if (of_frames.next() < p) return true;
   }
   return false;
 }

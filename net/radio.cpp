@@ -111,6 +111,10 @@ std::uint32_t Radio::take(AgentId sender, const Outgoing& packet) {
 void Radio::aim(Transmission& t, bool draws) {
   channel_.aim(t, draws);
   traffic_.sender(t.sender).expected += t.route.size;
+  // Who will soon be called: in a large crowd each is far from the one before.
+  for (std::size_t i = 0; i < t.route.size; ++i) {
+    __builtin_prefetch(receivers_[static_cast<std::size_t>(t.route.hearer(i))]);
+  }
 }
 
 bool Radio::send(AgentId sender, const Outgoing& packet) {
@@ -194,18 +198,17 @@ void Radio::schedule(std::uint32_t slot) {
 Fate Radio::fate_now(const Transmission& t, std::size_t i) const {
   Fate fate = t.fates[i];
   worsen(fate, channel_.on_arrival(t, i));
-  if (faults_) {
-    const Station& hearer = stations_[static_cast<std::size_t>(t.route.hearer(i))];
-    if (!hearer.up || hearer.up_since > t.start) worsen(fate, Fate::receiver_down);
+  if (!up_since_.empty()) {
+    const auto hearer = static_cast<std::size_t>(t.route.hearer(i));
+    if (!stations_[hearer].up || up_since_[hearer] > t.start) worsen(fate, Fate::receiver_down);
   }
   return fate;
 }
 
-void Radio::deliver(const Transmission& t, AgentId hearer) {
-  Receiver* const receiver = receivers_[static_cast<std::size_t>(hearer)];
+void Radio::deliver(const Packet& packet) {
+  Receiver* const receiver = receivers_[static_cast<std::size_t>(packet.receiver)];
   if (!receiver) return;
-  const Packet packet{t.sender, hearer, t.kind, t.bytes, t.sent, t.rider.get()};
-  simulation_.acting_for(hearer);
+  simulation_.acting_for(packet.receiver);
   receiver->on_packet(packet);
 }
 
@@ -214,6 +217,7 @@ void Radio::arrive(std::uint32_t slot) {
   Transmission& t = slots_[slot];
   if (t.acknowledged) return arrive_acknowledged(slot);
   MessageRow row = t.row(simulation_.now());
+  Packet packet = t.packet(no_agent);
   while (!t.done()) {
     const Time time = t.next();
     if (time > row.arrived) {
@@ -221,10 +225,10 @@ void Radio::arrive(std::uint32_t slot) {
       row.arrived = time;
     }
     const std::size_t i = t.settled++;
-    const AgentId hearer = t.route.hearer(i);
+    packet.receiver = t.route.hearer(i);
     const Fate fate = fate_now(t, i);
-    traffic_.settle(row, hearer, t.route.link(i), fate);
-    if (fate == Fate::delivered) deliver(t, hearer);
+    traffic_.settle(row, packet.receiver, t.route.link(i), fate);
+    if (fate == Fate::delivered) deliver(packet);
   }
   slots_.release(slot);
 }
@@ -232,9 +236,9 @@ void Radio::arrive(std::uint32_t slot) {
 void Radio::set_up(AgentId agent, bool up) {
   Station& s = stations_[index(agent, "agent")];
   if (s.up == up) return;
-  faults_ = true;
+  up_since_.resize(stations_.size());
   s.up = up;
-  s.up_since = simulation_.now();
+  up_since_[static_cast<std::size_t>(agent)] = simulation_.now();
   if (up) return;
   if (access_) access_->withdraw(agent);
   while (!s.waiting.empty()) settle_rest(s.waiting.pop(), Fate::sender_down);

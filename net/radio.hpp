@@ -100,7 +100,6 @@ class Radio final : private AccessUser {
   struct alignas(64) Station {
     SendQueue waiting;
     Time free_at;              // when the last bit of what is on the air will have left
-    Time up_since;             // if it is up
     EventId next;              // takes the next from the queue
     std::uint32_t on_air = 0;  // the last packet of which sending began, if held or before free_at
     bool held = false;         // by on_air: more frames of it, or an acknowledgement, are to come
@@ -124,7 +123,7 @@ class Radio final : private AccessUser {
   void schedule(std::uint32_t slot);
   void arrive(std::uint32_t slot);
   Fate fate_now(const Transmission& t, std::size_t i) const;
-  void deliver(const Transmission& t, AgentId hearer);
+  void deliver(const Packet& packet);
   // Sending (radio_air.cpp).
   void wake(AgentId sender);
   void ask(AgentId sender, int repetition);
@@ -153,7 +152,7 @@ class Radio final : private AccessUser {
   TransmissionPool slots_;
   std::unique_ptr<Access> access_;          // null: everybody sends at will
   std::unique_ptr<Receptions> receptions_;  // null: frames do not meet
-  bool faults_ = false;                     // somebody was down
+  std::vector<Time> up_since_;              // if it is up; empty as long as nobody was down
   std::uint64_t air_bytes_ = 0;             // what air_time_ is the time of
   Duration air_time_;
 };

@@ -14,7 +14,7 @@ void Radio::arrive_acknowledged(std::uint32_t slot) {
     t.settled = 1;
     MessageRow row = t.row(simulation_.now());
     traffic_.settle(row, t.receiver, t.route.link(0), Fate::delivered);
-    deliver(t, t.receiver);
+    deliver(t.packet(t.receiver));
   }
   const Time time = later(simulation_.now(), options_.acknowledgement.interframe);
   t.event = EventId();
@@ -83,9 +83,8 @@ void Radio::conclude(std::uint32_t slot, bool acknowledged) {
   }
   let_go(sender);
   if (Receiver* const receiver = receivers_[static_cast<std::size_t>(sender)]) {
-    const Packet packet{sender, t.receiver, t.kind, t.bytes, t.sent, t.rider.get()};
     simulation_.acting_for(sender);
-    receiver->on_outcome(packet, acknowledged);
+    receiver->on_outcome(t.packet(t.receiver), acknowledged);
   }
   slots_.release(slot);
 }

@@ -55,9 +55,9 @@ class SendQueue {
   }
 
   std::vector<Entry> ring_;
-  std::size_t head_ = 0;
-  std::size_t size_ = 0;
   std::uint64_t bytes_ = 0;
+  std::uint32_t head_ = 0;
+  std::uint32_t size_ = 0;
 };
 
 }  // namespace hearsay

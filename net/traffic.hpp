@@ -13,7 +13,7 @@ namespace hearsay {
 using FateCounts = std::array<std::uint64_t, fate_count>;
 
 /// Sums over a run, for one sender.
-struct SenderCounts {
+struct alignas(64) SenderCounts {
   std::uint64_t packets = 0;           ///< handed to the radio
   std::uint64_t begun = 0;             ///< packets of which sending began
   std::uint64_t frames = 0;            ///< frames of which sending began, repeated ones too

@@ -75,6 +75,7 @@ struct Transmission {
 
   bool done() const { return settled == route.size; }
   Time next() const { return later(arrives, done() ? Duration() : route.delay(settled)); }
+  Packet packet(AgentId hearer) const { return {sender, hearer, kind, bytes, sent, rider.get()}; }
   MessageRow row(Time now) const {
     return {sent, now, sender, no_agent, kind, static_cast<std::uint32_t>(bytes.size()), 0};
   }

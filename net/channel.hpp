@@ -26,10 +26,21 @@ class Channel {
   const Topology& topology() const { return topology_; }
   /// Who may hear `agent` now, by number. Valid until the next call.
   std::span<const AgentId> neighbours(AgentId agent);
+  /// True if they may change over time.
+  bool neighbours_change() const { return false; }
   /// True if who may hear a packet is known when it is handed over.
   bool foreseen() const { return true; }
   /// How many links there are, if they are numbered.
   std::size_t links() const { return topology_.links(); }
+
+  /// Calls visit(from, to, number) for each of them, by from and to.
+  template <class Visit>
+  void visit_links(Visit visit) const {
+    for (AgentId from = 0; from < agents(); ++from) {
+      auto link = static_cast<std::uint32_t>(topology_.first_link(from));
+      for (const AgentId to : topology_.neighbours(from)) visit(from, to, link++);
+    }
+  }
 
   /// Finds the route of a packet and uses up its draw on each link. With `draws` its fates are
   /// those the channel gives it: delivered, lost or out_of_range.

@@ -81,14 +81,23 @@ class Radio final : private AccessUser {
 
   /// Whom a broadcast of `agent` may reach now, by number. Valid until the next call.
   std::span<const AgentId> neighbours(AgentId agent) { return channel_.neighbours(agent); }
+  /// True if they may change over time.
+  bool neighbours_change() const { return channel_.neighbours_change(); }
   const Topology& topology() const { return channel_.topology(); }
   /// Sums of `sender`, 0 … n−1. @throws BrokenInvariant for another.
   const SenderCounts& counts(AgentId sender) const {
     index(sender, "sender");
     return traffic_.sender(sender);
   }
-  /// By number of the link in the topology; empty unless they are counted.
-  const std::vector<FateCounts>& link_counts() const { return traffic_.links(); }
+  /// Calls visit(sender, receiver, fates) for each link, by sender and receiver; for none unless
+  /// links are counted.
+  template <class Visit>
+  void visit_links(Visit visit) const {
+    if (traffic_.links().empty()) return;
+    channel_.visit_links([&](AgentId from, AgentId to, std::uint32_t link) {
+      if (link < traffic_.links().size()) visit(from, to, traffic_.links()[link]);
+    });
+  }
 
   /// Settles packets under way as in_flight_at_end, in the order in which they were sent. To be
   /// called after the run, not by a receiver.

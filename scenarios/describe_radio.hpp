@@ -13,6 +13,40 @@ void describe(V& v, LossSpec& s) {
 }
 
 template <class V>
+void describe(V& v, JitterSpec& s) {
+  v.field("law", s.law, one_of({"none", "uniform", "exponential"}),
+          "of the latency beside latency_s");
+  v.field("spread_s", s.spread_s, time_span(true), "uniform: the most; exponential: the mean");
+  v.field("order", s.order, one_of({"reordering", "in-order"}),
+          "whether a packet may overtake another on its link");
+}
+
+template <class V>
+void describe(V& v, SharingSpec& s) {
+  v.field("model", s.model, one_of({"none", "slotted-aloha", "carrier-sense", "tdma"}),
+          "who may send when; \"none\": all at will, packets pass through one another");
+  v.field("slot_s", s.slot_s, time_span(true), "length of a slot");
+  v.field("send_probability", s.send_probability, between(0.001, 1.0),
+          "slotted-aloha: of taking a slot");
+  v.field("slots", s.slots, between(0, 1e6), "tdma: in a cycle; 0: one an agent");
+  v.field("interframe_s", s.interframe_s, time_span(true),
+          "carrier-sense: the air must be free so long before slots are counted");
+  v.field("window_min", s.window_min, between(1, 65536),
+          "carrier-sense: back-off is below this many slots");
+  v.field("window_max", s.window_max, between(1, 65536),
+          "carrier-sense: the window doubles with each repetition up to this");
+  v.field("capture_db", s.capture_db, at_least(0.0),
+          "by position: a frame this much stronger than another survives; default: none does");
+}
+
+template <class V>
+void describe(V& v, AcknowledgementSpec& s) {
+  v.field("bytes", s.bytes, between(1, 65535), "of an acknowledgement on the air");
+  v.field("interframe_s", s.interframe_s, time_span(true), "from arrival to acknowledgement");
+  v.field("attempts_max", s.attempts_max, between(1, 1000), "then the sender gives up");
+}
+
+template <class V>
 void describe(V& v, RadioSpec& s) {
   v.field("topology", s.topology, one_of({"line", "ring", "star", "full", "edges", "disk"}),
           "who hears whom");
@@ -21,12 +55,25 @@ void describe(V& v, RadioSpec& s) {
   Allowed rate = greater_than_zero();
   rate.finest = 1e-3;
   v.field("rate_bps", s.rate_bps, rate, "bits a second of a transmitter");
-  v.field("header_bytes", s.header_bytes, between(0, 65535), "added to each packet on the air");
+  v.field("header_bytes", s.header_bytes, between(0, 65535), "added to each frame on the air");
+  v.field("mtu_bytes", s.mtu_bytes, between(1, 1e9),
+          "the most of a packet that a frame takes; default: a packet is one frame");
   v.field("queue_packets_max", s.queue_packets_max, between(1, 1e6),
           "packets waiting or being sent at a transmitter");
+  v.field("queue_bytes_max", s.queue_bytes_max, between(1, 1e9),
+          "bytes, with headers, waiting or being sent at a transmitter; default: any");
+  v.field("queue_policy", s.queue_policy, one_of({"drop-new", "drop-oldest", "replace"}),
+          "what a full queue drops; \"replace\": news of a thing takes the place of older news");
+  v.field("queue_wait_max_s", s.queue_wait_max_s, time_span(false),
+          "who has waited longer is not sent; default: nobody");
+  v.field("half_duplex", s.half_duplex, one_of({"on", "off"}),
+          "whether who sends is deaf; default: on if the channel is shared");
+  v.table("sharing", s.sharing, "how radios share the channel");
+  v.table("acknowledgement", s.acknowledgement, "for packets that are to be acknowledged");
   v.field("latency_s", s.latency_s, time_span(true), "from the last bit sent to arrival");
   v.field("propagation_m_per_s", s.propagation_m_per_s, greater_than_zero(),
           "for \"disk\": arrival is later by distance / speed; default: by nothing");
+  v.table("jitter", s.jitter, "latency that differs from packet to packet");
   v.table("loss", s.loss, "how packets get lost");
 }
 

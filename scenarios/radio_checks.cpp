@@ -24,6 +24,7 @@ void check_radio(ScenarioUnderCheck& file) {
   const KeyPath agents = top["agents"];
   const KeyPath path = top["radio"];
   const RadioSpec& radio = file.scenario.radio;
+  check_transmitter(file);
   if (radio.loss.model == "none" && radio.loss.probability > 0.0) {
     file.fail(path["loss"]["probability"],
               "without effect; set radio.loss.model = \"bernoulli\", too");

@@ -13,14 +13,46 @@ struct LossSpec {
   double probability = 0.0;    ///< [0, 1]
 };
 
+struct JitterSpec {
+  std::string law = "none";          ///< "none" | "uniform" | "exponential"
+  double spread_s = 0.0;             ///< ≥ 0; uniform: the most, exponential: the mean
+  std::string order = "reordering";  ///< "reordering" | "in-order"
+};
+
+/// How radios share the channel.
+struct SharingSpec {
+  std::string model = "none";        ///< "none" | "slotted-aloha" | "carrier-sense" | "tdma"
+  double slot_s = 0.0;               ///< > 0 unless "none"
+  double send_probability = 1.0;     ///< slotted-aloha, [0.001, 1]
+  int slots = 0;                     ///< tdma: in a cycle; 0: one an agent
+  double interframe_s = 0.0;         ///< carrier-sense, ≥ 0
+  int window_min = 16;               ///< carrier-sense: slots, 1 … 65536
+  int window_max = 1024;             ///< carrier-sense: slots, window_min … 65536
+  std::optional<double> capture_db;  ///< ≥ 0; none: no frame survives an overlap
+};
+
+struct AcknowledgementSpec {
+  int bytes = 14;             ///< 1 … 65535
+  double interframe_s = 0.0;  ///< ≥ 0
+  int attempts_max = 7;       ///< 1 … 1000
+};
+
 struct RadioSpec {
-  std::string topology = "full";          ///< "line" | "ring" | "star" | "full" | "edges" | "disk"
-  std::vector<std::array<int, 2>> edges;  ///< for "edges"; agents by number
-  double range_m = 0.0;                   ///< for "disk", > 0
-  double rate_bps = 1e6;                  ///< > 0
-  int header_bytes = 0;                   ///< 0 … 65535
-  int queue_packets_max = 64;             ///< 1 … 1e6
-  double latency_s = 0.0;                 ///< ≥ 0
+  std::string topology = "full";           ///< "line" | "ring" | "star" | "full" | "edges" | "disk"
+  std::vector<std::array<int, 2>> edges;   ///< for "edges"; agents by number
+  double range_m = 0.0;                    ///< for "disk", > 0
+  double rate_bps = 1e6;                   ///< > 0
+  int header_bytes = 0;                    ///< 0 … 65535
+  std::optional<int> mtu_bytes;            ///< 1 … 1e9; none: a packet is one frame
+  int queue_packets_max = 64;              ///< 1 … 1e6
+  std::optional<int> queue_bytes_max;      ///< with headers, 1 … 1e9
+  std::string queue_policy = "drop-new";   ///< "drop-new" | "drop-oldest" | "replace"
+  std::optional<double> queue_wait_max_s;  ///< > 0
+  std::optional<std::string> half_duplex;  ///< "on" | "off"; default: on if the channel is shared
+  SharingSpec sharing;
+  AcknowledgementSpec acknowledgement;
+  double latency_s = 0.0;  ///< ≥ 0
+  JitterSpec jitter;
   /// > 0, for "disk": the way to a hearer takes distance / speed; none: no time
   std::optional<double> propagation_m_per_s;
   LossSpec loss;

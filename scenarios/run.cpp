@@ -205,6 +205,7 @@ std::unique_ptr<Agent> Run::make_estimator(AgentId id) {
             : talk_phase(talk_phase_of(spec.talk.phase), period, id,
                          static_cast<int>(prepared_->specs.size()), simulation_.seed());
     options.talk = PeriodicTalk{.period = period, .phase = phase};
+    options.acknowledged = spec.talk.acknowledged == "on";
   }
   return std::make_unique<EstimatorAgent>(*contexts_[i], *witness_, std::move(options));
 }
@@ -244,6 +245,7 @@ void Run::leave_final_values() {
   if (witness_) witness_->finish();
   radio_->finish();
   record_radio();
+  record_links();
   record_log();
 }
 
@@ -257,11 +259,27 @@ void Run::record_radio() {
     scalar("packets", static_cast<double>(counts.packets));
     scalar("bytes_sent", static_cast<double>(counts.bytes_sent));
     scalar("air_time_s", counts.air_time.seconds());
+    scalar("queue_delay_mean_s", counts.queue_delay.seconds() / static_cast<double>(counts.begun));
+    scalar("delivery_ratio",
+           static_cast<double>(counts.fates[0]) / static_cast<double>(counts.expected));
+    scalar("frames", static_cast<double>(counts.frames));
+    scalar("acknowledgements", static_cast<double>(counts.acknowledgements));
     for (int f = 0; f < fate_count; ++f) {
       scalar(std::string("packets_") + to_string(static_cast<Fate>(f)),
              static_cast<double>(counts.fates[static_cast<std::size_t>(f)]));
     }
   }
+}
+
+void Run::record_links() {
+  Record& record = simulation_.record();
+  radio_->visit_links([&](AgentId from, AgentId to, const FateCounts& counts) {
+    for (int f = 0; f < fate_count; ++f) {
+      const std::uint64_t packets = counts[static_cast<std::size_t>(f)];
+      if (packets == 0) continue;
+      record.link({from, to, record.name(to_string(static_cast<Fate>(f))), packets});
+    }
+  });
 }
 
 void Run::record_log() {

@@ -78,6 +78,7 @@ class Run {
   std::unique_ptr<Agent> make_estimator(AgentId id);
   void leave_final_values();
   void record_radio();
+  void record_links();
   void record_log();
 
   // The order matters: what is below is destroyed first and may use what is above.

@@ -46,6 +46,9 @@ inline bool placed(const AgentSpec& agent) { return agent.position_m || agent.ci
 /// The first one whose name an earlier one has, too.
 std::optional<std::size_t> first_duplicate(const std::vector<std::string>& names);
 
+/// Checks queue, frames and how the channel is shared.
+/// @throws InputError.
+void check_transmitter(ScenarioUnderCheck& file);
 /// Checks [radio], and finds the numbers of agents in edges.
 /// @throws InputError.
 void check_radio(ScenarioUnderCheck& file);

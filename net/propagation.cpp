@@ -148,11 +148,14 @@ LinkQuality Propagation::quality(double distance_m, double shadowing_db,
   return quality;
 }
 
-double Propagation::received_dbm(double distance_m, double shadowing_db) const {
-  if (model_ != Model::log_distance) return -20.0 * math::log10(std::max(distance_m, 1.0));
+double Propagation::path_loss_db(double distance_m) const {
+  if (model_ != Model::log_distance) return 20.0 * math::log10(std::max(distance_m, 1.0));
   const double ratio = std::max(distance_m / path_.reference_m, 1.0);
-  return path_.transmit_dbm - path_.reference_loss_db - 10.0 * path_.exponent * math::log10(ratio) -
-         shadowing_db;
+  return path_.reference_loss_db + 10.0 * path_.exponent * math::log10(ratio);
+}
+
+double Propagation::received_dbm(double distance_m, double shadowing_db) const {
+  return path_.transmit_dbm - path_loss_db(distance_m) - shadowing_db;
 }
 
 double frame_success(const LinkQuality& quality, std::uint32_t frame_bytes) {

@@ -93,9 +93,12 @@ class Propagation {
   LinkQuality quality(double distance_m, double shadowing_db = 0.0,
                       double interference_mw = 0.0) const;
 
-  /// Power at the receiver, to compare senders with. For disk and grey zone, which know no powers,
-  /// that of 0 dBm at 1 m falling with the square of the distance: differences of it have a
-  /// meaning, values have none.
+  /// What is lost on the way, in dB, without shadowing. For disk and grey zone, which know no
+  /// powers, 20 log10(d) from 1 m on.
+  double path_loss_db(double distance_m) const;
+
+  /// Power at the receiver, to compare senders with. For disk and grey zone a sender has
+  /// 0 dBm: differences of it have a meaning, values have none.
   double received_dbm(double distance_m, double shadowing_db = 0.0) const;
 
  private:

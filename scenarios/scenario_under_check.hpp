@@ -50,4 +50,9 @@ std::optional<std::size_t> first_duplicate(const std::vector<std::string>& names
 /// @throws InputError.
 void check_radio(ScenarioUnderCheck& file);
 
+/// Checks losses, propagation, jammers and dropouts, and finds the numbers of agents in them. Part
+/// of check_radio().
+/// @throws InputError.
+void check_channel(ScenarioUnderCheck& file);
+
 }  // namespace hearsay

@@ -123,6 +123,7 @@ void describe(V& v, Scenario& s) {
   v.table("world", s.world, "what is true");
   v.table("radio", s.radio, "how agents hear one another");
   v.table("agents", s.agents, "at least one [[agents]]");
+  v.table("dropouts", s.dropouts, "agents that die, sleep or reboot");
   v.table("record", s.record, "what the run leaves behind");
 }
 

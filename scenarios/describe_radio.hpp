@@ -1,16 +1,11 @@
 // What [radio] of a scenario file may say; see describe.hpp.
 #pragma once
 
+#include "scenarios/describe_channel.hpp"
 #include "scenarios/radio_spec.hpp"
 #include "scenarios/reading.hpp"
 
 namespace hearsay {
-
-template <class V>
-void describe(V& v, LossSpec& s) {
-  v.field("model", s.model, one_of({"none", "bernoulli"}), "how packets get lost");
-  v.field("probability", s.probability, between(0.0, 1.0), "of losing a packet on a link");
-}
 
 template <class V>
 void describe(V& v, JitterSpec& s) {
@@ -48,7 +43,8 @@ void describe(V& v, AcknowledgementSpec& s) {
 
 template <class V>
 void describe(V& v, RadioSpec& s) {
-  v.field("topology", s.topology, one_of({"line", "ring", "star", "full", "edges", "disk"}),
+  v.field("topology", s.topology,
+          one_of({"line", "ring", "star", "full", "edges", "disk", "by-position"}),
           "who hears whom");
   v.field("edges", s.edges, anything(), "for \"edges\": pairs of agents, by number or name");
   v.field("range_m", s.range_m, at_least(0.0), "for \"disk\": who is nearer hears");
@@ -72,9 +68,13 @@ void describe(V& v, RadioSpec& s) {
   v.table("acknowledgement", s.acknowledgement, "for packets that are to be acknowledged");
   v.field("latency_s", s.latency_s, time_span(true), "from the last bit sent to arrival");
   v.field("propagation_m_per_s", s.propagation_m_per_s, greater_than_zero(),
-          "for \"disk\": arrival is later by distance / speed; default: by nothing");
+          "for \"disk\" and \"by-position\": arrival is later by distance / speed; default: by "
+          "nothing");
   v.table("jitter", s.jitter, "latency that differs from packet to packet");
   v.table("loss", s.loss, "how packets get lost");
+  v.table("propagation", s.propagation,
+          "for \"by-position\": how well a frame gets over a distance");
+  v.table("jammers", s.jammers, "senders of noise");
 }
 
 }  // namespace hearsay

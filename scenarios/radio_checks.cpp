@@ -25,10 +25,7 @@ void check_radio(ScenarioUnderCheck& file) {
   const KeyPath path = top["radio"];
   const RadioSpec& radio = file.scenario.radio;
   check_transmitter(file);
-  if (radio.loss.model == "none" && radio.loss.probability > 0.0) {
-    file.fail(path["loss"]["probability"],
-              "without effect; set radio.loss.model = \"bernoulli\", too");
-  }
+  check_channel(file);
   if (radio.topology == "edges" && radio.edges.empty()) {
     file.fail(path["topology"], "\"edges\" needs radio.edges, as [[0, 1], [1, 2]]");
   }
@@ -36,16 +33,21 @@ void check_radio(ScenarioUnderCheck& file) {
     file.fail(path["edges"], "only for topology = \"edges\"; found \"" + radio.topology + "\"");
   }
   resolve_edges(file, path);
-  if (radio.propagation_m_per_s && radio.topology != "disk") {
+  const bool knows_lengths = radio.topology == "disk" || radio.topology == "by-position";
+  if (radio.propagation_m_per_s && !knows_lengths) {
     file.fail(path["propagation_m_per_s"],
-              "only for topology = \"disk\", which knows how long links are; found \"" +
+              "only for topology = \"disk\" or \"by-position\", which know how long links are; "
+              "found \"" +
                   radio.topology + "\"");
   }
-  if (radio.topology != "disk") return;
-  if (radio.range_m <= 0.0) file.fail(path["topology"], "\"disk\" needs radio.range_m above 0");
+  if (radio.topology == "disk" && radio.range_m <= 0.0) {
+    file.fail(path["topology"], "\"disk\" needs radio.range_m above 0");
+  }
+  if (!knows_lengths && radio.jammers.empty()) return;
+  const std::string who = knows_lengths ? "topology = \"" + radio.topology + "\"" : "a jammer";
   for (std::size_t i = 0; i < file.scenario.agents.size(); ++i) {
     if (placed(file.scenario.agents[i])) continue;
-    file.fail(agents[i], "topology = \"disk\" needs to know where it stands: position_m or circle");
+    file.fail(agents[i], who + " needs to know where it stands: position_m or circle");
   }
 }
 

@@ -6,12 +6,9 @@
 #include <string>
 #include <vector>
 
-namespace hearsay {
+#include "scenarios/channel_spec.hpp"
 
-struct LossSpec {
-  std::string model = "none";  ///< "none" | "bernoulli"
-  double probability = 0.0;    ///< [0, 1]
-};
+namespace hearsay {
 
 struct JitterSpec {
   std::string law = "none";          ///< "none" | "uniform" | "exponential"
@@ -38,7 +35,8 @@ struct AcknowledgementSpec {
 };
 
 struct RadioSpec {
-  std::string topology = "full";           ///< "line" | "ring" | "star" | "full" | "edges" | "disk"
+  /// "line" | "ring" | "star" | "full" | "edges" | "disk" | "by-position"
+  std::string topology = "full";
   std::vector<std::array<int, 2>> edges;   ///< for "edges"; agents by number
   double range_m = 0.0;                    ///< for "disk", > 0
   double rate_bps = 1e6;                   ///< > 0
@@ -53,9 +51,11 @@ struct RadioSpec {
   AcknowledgementSpec acknowledgement;
   double latency_s = 0.0;  ///< ≥ 0
   JitterSpec jitter;
-  /// > 0, for "disk": the way to a hearer takes distance / speed; none: no time
+  /// > 0, for "disk" and "by-position": the way to a hearer takes distance / speed; none: no time
   std::optional<double> propagation_m_per_s;
   LossSpec loss;
+  std::optional<PropagationSpec> propagation;  ///< for "by-position", which needs it
+  std::vector<JammerSpec> jammers;
 };
 
 }  // namespace hearsay

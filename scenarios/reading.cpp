@@ -104,7 +104,8 @@ std::string Allowed::text() const {
     return text;
   }
   if (!std::isfinite(low)) return "";
-  if (above_low) return "> " + limit_text(low);
+  const bool closed = std::isfinite(high) && finest == 0.0;
+  if (above_low) return "> " + limit_text(low) + (closed ? " … " + limit_text(high) : "");
   if (!std::isfinite(high) || finest > 0.0) return "≥ " + limit_text(low);
   return limit_text(low) + " … " + limit_text(high);
 }
@@ -113,6 +114,12 @@ Allowed anything() { return {}; }
 
 Allowed greater_than_zero() {
   Allowed allowed = at_least(0.0);
+  allowed.above_low = true;
+  return allowed;
+}
+
+Allowed above_zero_to(double high) {
+  Allowed allowed = between(0.0, high);
   allowed.above_low = true;
   return allowed;
 }
@@ -175,6 +182,29 @@ void read(const TomlNode& node, const KeyPath& path, const Allowed& allowed, std
   const std::int64_t wide = read_integer(node, path, allowed);
   if (wide < 0) reject(node, path, "must be at least 0");
   value = static_cast<std::uint64_t>(wide);
+}
+
+void read(const TomlNode& node, const KeyPath& path, const Allowed&, bool& value) {
+  if (node.type != TomlNode::Type::boolean) reject_type(node, path, "true or false");
+  value = node.boolean;
+}
+
+void read(const TomlNode& node, const KeyPath& path, const Allowed& allowed, AgentRef& value) {
+  value = {};
+  if (node.type == TomlNode::Type::string) return;
+  if (node.type != TomlNode::Type::integer) {
+    reject_type(node, path, "the number or name of an agent");
+  }
+  read(node, path, allowed, value.number);
+}
+
+void read(const TomlNode& node, const KeyPath& path, const Allowed& allowed,
+          std::vector<AgentRef>& value) {
+  expect_array(node, path, "an array of agents");
+  value.assign(node.children.size(), {});
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    read(node.children[i], path[i], allowed, value[i]);
+  }
 }
 
 void read(const TomlNode& node, const KeyPath& path, const Allowed& allowed, std::string& value) {

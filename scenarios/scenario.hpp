@@ -90,6 +90,7 @@ struct Scenario {
   WorldSpec world;
   RadioSpec radio;
   std::vector<AgentSpec> agents;  ///< at least one
+  std::vector<DropoutSpec> dropouts;
   RecordSpec record;
 
   /// Number of agents: the sum of counts.

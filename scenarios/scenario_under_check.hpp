@@ -53,4 +53,9 @@ void check_transmitter(ScenarioUnderCheck& file);
 /// @throws InputError.
 void check_radio(ScenarioUnderCheck& file);
 
+/// Checks losses, propagation, jammers and dropouts, and finds the numbers of agents in them. Part
+/// of check_radio().
+/// @throws InputError.
+void check_channel(ScenarioUnderCheck& file);
+
 }  // namespace hearsay

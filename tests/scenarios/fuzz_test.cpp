@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "scenarios/channel.hpp"
 #include "temp_files.hpp"
 
 namespace hearsay {
@@ -101,6 +102,36 @@ TEST_F(Fuzz, AScenarioIsReadOrRefused) {
   Dice dice;
   for (int i = 0; i < 2000; ++i) {
     attempt(mutated(ring, dice), [] { canonical_text(load_scenario("f.toml", {}, {})); });
+  }
+  EXPECT_GT(read, 20);
+  EXPECT_GT(refused, 500);
+}
+
+TEST_F(Fuzz, AChannelIsReadAndCanBeBuiltOrIsRefused) {
+  const std::string channel = R"(duration_s = 9
+[radio]
+topology = "by-position"
+propagation = { model = "log-distance", exponent = 2, shadowing_sigma_db = 4, range_m = 90 }
+loss = { model = "gilbert-elliott", probability = 0.5, mean_burst = 5 }
+jammers = [{ position_m = [1, 2], power_dbm = 9, from_s = 1, period_s = 3, duty = 0.5 }]
+[[agents]]
+count = 3
+circle = { radius_m = 9 }
+[[dropouts]]
+agents = [0, "estimator1"]
+kind = "reboot"
+mean_up_s = 9
+mean_down_s = 1
+)";
+  Dice dice;
+  for (int i = 0; i < 2000; ++i) {
+    attempt(mutated(channel, dice), [] {
+      const Scenario s = load_scenario("f.toml", {}, {});
+      EXPECT_NO_THROW(loss_of(s.radio.loss));
+      EXPECT_NO_THROW(propagation_of(s.radio));
+      EXPECT_NO_THROW(jammers_of(s.radio));
+      EXPECT_NO_THROW(dropouts_of(s, 1, Time::at(9_s)).next(1));
+    });
   }
   EXPECT_GT(read, 20);
   EXPECT_GT(refused, 500);

@@ -79,14 +79,8 @@ std::string KeyPath::text() const {
 }
 
 void reject(const TomlNode& node, const KeyPath& path, const std::string& why) {
-  constexpr std::size_t longest = 80;
-  std::string value = to_toml(node);
-  if (value.size() > longest) {
-    std::size_t cut = longest;
-    while (cut > 0 && (static_cast<unsigned char>(value[cut]) & 0xC0) == 0x80) --cut;
-    value = value.substr(0, cut) + "…";
-  }
-  throw InputError(node.origin.text() + ": " + path.text() + " = " + value + ": " + why);
+  throw InputError(node.origin.text() + ": " + path.text() + " = " + shortened(to_toml(node)) +
+                   ": " + why);
 }
 
 void reject_key(const Origin& origin, const std::string& path, const std::string& why) {

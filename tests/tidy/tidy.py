@@ -30,7 +30,7 @@ THIRD_PARTIES = {
     "sim/record": ["SQLiteCpp/", "sqlite3.h", "xxhash.h", "fmt/"],
     "filters": ["Eigen/"],
     "agents": ["Eigen/"],
-    "scenarios": ["toml++/", "fmt/"],
+    "scenarios": ["toml++/", "boost/tokenizer.hpp", "fmt/"],
 }
 RUN_ROOMS = ["sim", "net", "filters", "agents", "scenarios"]
 # What may not stand in code that computes a run, and where it may all the same.

@@ -10,7 +10,8 @@
 namespace hearsay {
 namespace {
 
-constexpr PurposeOnLink reception{Purpose("reception of a tick"), Purpose("reception of a packet")};
+constexpr PurposeOnLink reception{Purpose("reception of a tick"), Purpose("reception of a packet"),
+                                  Purpose("reception of a repetition")};
 constexpr Purpose shadowing("shadowing");
 
 // Twice the data rate over the noise bandwidth: BER = ½ exp(−γ/1.28).

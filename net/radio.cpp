@@ -20,11 +20,11 @@ const RadioOptions& checked(const RadioOptions& options) {
 
 }  // namespace
 
-Radio::Radio(Simulation& simulation, Topology topology, const RadioOptions& options)
+Radio::Radio(Simulation& simulation, Reach reach, const RadioOptions& options)
     : simulation_(simulation),
       options_(checked(options)),
-      channel_(simulation, std::move(topology), options_),
-      traffic_(simulation.record(), channel_.agents(), options_.count_links ? channel_.links() : 0),
+      channel_(simulation, std::move(reach), options_),
+      traffic_(simulation.record(), channel_.agents(), options_.count_links),
       receivers_(static_cast<std::size_t>(channel_.agents()), nullptr),
       stations_(static_cast<std::size_t>(channel_.agents())),
       access_(make_access(options_.access, simulation, channel_.agents(), *this)) {

@@ -23,6 +23,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "net/channel.hpp"
@@ -55,7 +56,10 @@ class Radio final : private AccessUser {
  public:
   /// `simulation` must outlive the radio.
   /// @throws InputError for an option outside its range, or that does not fit the topology.
-  Radio(Simulation& simulation, Topology topology, const RadioOptions& options);
+  Radio(Simulation& simulation, Reach reach, const RadioOptions& options);
+  /// A graph that does not change.
+  Radio(Simulation& simulation, Topology topology, const RadioOptions& options)
+      : Radio(simulation, Reach{.topology = std::move(topology)}, options) {}
   /// Takes back what is under way: no receiver is called any more, riders are released.
   ~Radio() override;
   Radio(const Radio&) = delete;
@@ -83,6 +87,8 @@ class Radio final : private AccessUser {
   std::span<const AgentId> neighbours(AgentId agent) { return channel_.neighbours(agent); }
   /// True if they may change over time.
   bool neighbours_change() const { return channel_.neighbours_change(); }
+  /// Where `agent` is now. @throws BrokenInvariant if nobody knows.
+  Point position(AgentId agent) const { return channel_.position(agent); }
   const Topology& topology() const { return channel_.topology(); }
   /// Sums of `sender`, 0 … n−1. @throws BrokenInvariant for another.
   const SenderCounts& counts(AgentId sender) const {

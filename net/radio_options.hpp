@@ -4,9 +4,12 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include "net/access.hpp"
+#include "net/faults.hpp"
 #include "net/loss.hpp"
+#include "net/propagation.hpp"
 #include "sim/kernel/time.hpp"
 
 namespace hearsay {
@@ -57,6 +60,10 @@ struct RadioOptions {
   Duration latency;  ///< ≥ 0, from the last bit sent to arrival
   JitterOptions jitter;
   Loss loss;
+  /// Who is in reach, and hears. Models other than a disk without end need positions; the topology
+  /// joins whoever is within their reach.
+  Propagation propagation;
+  std::vector<Jammer> jammers;  ///< need positions
   /// > 0; the way to a hearer takes link length / speed more, to the nearest nanosecond. Infinite:
   /// no time. A finite speed needs positions.
   double propagation_m_per_s = std::numeric_limits<double>::infinity();

@@ -1,22 +1,23 @@
 #include "net/traffic.hpp"
 
+#include <bit>
 #include <string>
 
 #include "sim/kernel/error.hpp"
 
 namespace hearsay {
 
-Traffic::Traffic(Record& record, int agents, std::size_t links)
-    : record_(record),
-      senders_(static_cast<std::size_t>(agents)),
-      links_(links),
-      count_links_(links > 0) {
+Traffic::Traffic(Record& record, int agents, bool count_links)
+    : record_(record), senders_(static_cast<std::size_t>(agents)), count_links_(count_links) {
   for (int fate = 0; fate < fate_count; ++fate) {
     fate_names_[static_cast<std::size_t>(fate)] = record_.name(to_string(static_cast<Fate>(fate)));
   }
 }
 
-void Traffic::count(std::uint32_t link, std::size_t fate) { ++links_[link][fate]; }
+void Traffic::count(std::uint32_t link, std::size_t fate) {
+  if (links_.size() <= link) links_.resize(std::bit_ceil(std::size_t{link} + 1));
+  ++links_[link][fate];
+}
 
 void require_balance(AgentId sender, const SenderCounts& counts) {
   std::uint64_t settled = 0;

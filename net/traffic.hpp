@@ -30,11 +30,11 @@ void require_balance(AgentId sender, const SenderCounts& counts);
 
 class Traffic {
  public:
-  /// `record` outlives this. `links`: how many are counted, 0 for none.
-  Traffic(Record& record, int agents, std::size_t links);
+  /// `record` outlives this.
+  Traffic(Record& record, int agents, bool count_links);
 
   /// One fate of one packet; `row` has all but receiver and fate. `link` matters if links are
-  /// counted, and grows their number.
+  /// counted.
   void settle(MessageRow& row, AgentId receiver, std::uint32_t link, Fate fate) {
     const auto f = static_cast<std::size_t>(fate);
     row.receiver = receiver;

@@ -44,9 +44,10 @@ inline Time later(Time time, Duration span) {
 }
 
 struct Transmission {
-  std::vector<std::byte> bytes;  // vectors keep their room for the slot's next packet
-  std::vector<Fate> fates;       // of the hearers in order of arrival, as far as known
-  std::vector<Ear> ears;         // if the route is this packet's own
+  std::vector<std::byte> bytes;        // vectors keep their room for the slot's next packet
+  std::vector<Fate> fates;             // of the hearers in order of arrival, as far as known
+  std::vector<std::uint64_t> numbers;  // of its draws at the hearers, if needed again
+  std::vector<Ear> ears;               // if the route is this packet's own
   // Where the channel is shared: who is disturbed by a frame that is not for them. (What would be
   // its fate there is of no interest.)
   std::vector<AgentId> overhearers;

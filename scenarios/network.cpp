@@ -3,6 +3,8 @@
 #include <limits>
 #include <utility>
 
+#include "scenarios/channel.hpp"
+
 namespace hearsay {
 
 Topology topology_of(const Scenario& scenario, const Places& places) {
@@ -76,7 +78,9 @@ RadioOptions radio_options(const RadioSpec& spec) {
   options.capture_db = spec.sharing.capture_db.value_or(infinity);
   options.latency = Duration::seconds(spec.latency_s);
   options.jitter = jitter_options(spec.jitter);
-  if (spec.loss.model == "bernoulli") options.loss = Loss::bernoulli(spec.loss.probability);
+  options.loss = loss_of(spec.loss);
+  options.propagation = propagation_of(spec);
+  for (const JammerSpec& jammer : spec.jammers) options.jammers.push_back(jammer_of(jammer));
   options.propagation_m_per_s = spec.propagation_m_per_s.value_or(infinity);
   options.acknowledgement = {.bytes = static_cast<std::uint32_t>(spec.acknowledgement.bytes),
                              .interframe = Duration::seconds(spec.acknowledgement.interframe_s),

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "scenarios/channel.hpp"
 #include "scenarios/network.hpp"
 #include "sim/kernel/error.hpp"
 
@@ -183,6 +184,10 @@ void Run::build_agents(const Catalog& catalog) {
                                                     : own->second.make(*contexts_.back()));
     radio_->attach(id, *agents_.back());
   }
+  Dropouts dropouts = dropouts_of(scenario, simulation_.seed(), prepared_->end);
+  if (!dropouts.agents().empty()) {
+    life_ = std::make_unique<Life>(simulation_, *radio_, agents_, std::move(dropouts));
+  }
 }
 
 std::unique_ptr<Agent> Run::make_estimator(AgentId id) {
@@ -213,6 +218,7 @@ std::unique_ptr<Agent> Run::make_estimator(AgentId id) {
 RunEnd Run::run() {
   try {
     if (witness_) witness_->start();
+    if (life_) life_->start();
     for (std::size_t i = 0; i < agents_.size(); ++i) {
       simulation_.acting_for(static_cast<AgentId>(i));
       agents_[i]->start();
@@ -234,6 +240,7 @@ RunEnd Run::run() {
 }
 
 void Run::keep_record_only() {
+  life_.reset();
   agents_.clear();
   contexts_.clear();
   radio_.reset();

@@ -15,6 +15,7 @@
 #include "agents/catalog.hpp"
 #include "agents/estimator_agent.hpp"
 #include "agents/witness.hpp"
+#include "scenarios/life.hpp"
 #include "scenarios/loader.hpp"
 #include "scenarios/scenario.hpp"
 #include "sim/world/mrclam.hpp"
@@ -88,6 +89,7 @@ class Run {
   std::unique_ptr<Radio> radio_;
   std::vector<std::unique_ptr<Context>> contexts_;
   std::vector<std::unique_ptr<Agent>> agents_;
+  std::unique_ptr<Life> life_;
 };
 
 }  // namespace hearsay

@@ -3,48 +3,23 @@
 #include "scenarios/scenario_under_check.hpp"
 
 namespace hearsay {
-namespace {
-
-void resolve_edges(ScenarioUnderCheck& file, const KeyPath& radio) {
-  const KeyPath edges = radio["edges"];
-  for (std::size_t i = 0; i < file.scenario.radio.edges.size(); ++i) {
-    const KeyPath path = edges[i];
-    const TomlNode& node = file.locate(path);
-    auto& [a, b] = file.scenario.radio.edges[i];
-    a = file.resolve_agent(node.children[0], path, a);
-    b = file.resolve_agent(node.children[1], path, b);
-    if (a == b) reject(node, path, "joins an agent to itself");
-  }
-}
-
-}  // namespace
 
 void check_radio(ScenarioUnderCheck& file) {
   const KeyPath top;
-  const KeyPath agents = top["agents"];
   const KeyPath path = top["radio"];
   const RadioSpec& radio = file.scenario.radio;
   if (radio.loss.model == "none" && radio.loss.probability > 0.0) {
     file.fail(path["loss"]["probability"],
               "without effect; set radio.loss.model = \"bernoulli\", too");
   }
-  if (radio.topology == "edges" && radio.edges.empty()) {
-    file.fail(path["topology"], "\"edges\" needs radio.edges, as [[0, 1], [1, 2]]");
-  }
-  if (radio.topology != "edges" && !radio.edges.empty()) {
-    file.fail(path["edges"], "only for topology = \"edges\"; found \"" + radio.topology + "\"");
-  }
-  resolve_edges(file, path);
-  if (radio.propagation_m_per_s && radio.topology != "disk") {
-    file.fail(path["propagation_m_per_s"],
-              "only for topology = \"disk\", which knows how long links are; found \"" +
-                  radio.topology + "\"");
-  }
-  if (radio.topology != "disk") return;
-  if (radio.range_m <= 0.0) file.fail(path["topology"], "\"disk\" needs radio.range_m above 0");
-  for (std::size_t i = 0; i < file.scenario.agents.size(); ++i) {
-    if (placed(file.scenario.agents[i])) continue;
-    file.fail(agents[i], "topology = \"disk\" needs to know where it stands: position_m or circle");
+  check_links(file);
+  const bool long_links = radio.topology == "disk" || radio.topology == "random-geometric";
+  if (radio.propagation_m_per_s && !long_links) {
+    file.fail(
+        path["propagation_m_per_s"],
+        "only for topology = \"disk\" or \"random-geometric\", which know how long links are; "
+        "found \"" +
+            radio.topology + "\"");
   }
 }
 

@@ -1,28 +1,10 @@
 #include "scenarios/network.hpp"
 
 #include <limits>
-#include <utility>
 
 #include "scenarios/channel.hpp"
 
 namespace hearsay {
-
-Topology topology_of(const Scenario& scenario, const Places& places) {
-  const RadioSpec& radio = scenario.radio;
-  const int agents = scenario.agent_count();
-  if (radio.topology == "line") return Topology::line(agents);
-  if (radio.topology == "ring") return Topology::ring(agents);
-  if (radio.topology == "star") return Topology::star(agents);
-  if (radio.topology == "full") return Topology::full(agents);
-  if (radio.topology == "edges") {
-    std::vector<std::pair<AgentId, AgentId>> edges;
-    for (const auto& [a, b] : radio.edges) edges.emplace_back(a, b);
-    return Topology::edges(agents, edges);
-  }
-  std::vector<std::array<double, 3>> positions;
-  for (const auto& place : places) positions.push_back({place.value()[0], place.value()[1], 0.0});
-  return Topology::disk(positions, radio.range_m);
-}
 
 namespace {
 
@@ -65,11 +47,13 @@ JitterOptions jitter_options(const JitterSpec& spec) {
 
 }  // namespace
 
-RadioOptions radio_options(const RadioSpec& spec) {
+RadioOptions radio_options(const Scenario& scenario) {
+  const RadioSpec& spec = scenario.radio;
   const double infinity = std::numeric_limits<double>::infinity();
   const bool shared = spec.sharing.model != "none";
   RadioOptions options;
   options.rate_bps = spec.rate_bps;
+  options.count_links = scenario.record.links == "on";
   options.header_bytes = static_cast<std::uint32_t>(spec.header_bytes);
   if (spec.mtu_bytes) options.mtu_bytes = static_cast<std::uint32_t>(*spec.mtu_bytes);
   options.queue = queue_options(spec);

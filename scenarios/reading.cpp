@@ -257,6 +257,23 @@ void read(const TomlNode& node, const KeyPath& path, const Allowed& allowed,
 }
 
 void read(const TomlNode& node, const KeyPath& path, const Allowed& allowed,
+          std::vector<std::vector<int>>& value) {
+  expect_array(node, path, "an array of groups of agents");
+  value.clear();
+  for (std::size_t i = 0; i < node.children.size(); ++i) {
+    const TomlNode& group = node.children[i];
+    const KeyPath group_path = path[i];
+    expect_array(group, group_path, "a group of agents, as [0, 1]");
+    value.emplace_back(group.children.size(), -1);
+    for (std::size_t k = 0; k < group.children.size(); ++k) {
+      const TomlNode& member = group.children[k];
+      if (member.type == TomlNode::Type::string) continue;
+      read(member, group_path[k], allowed, value[i][k]);
+    }
+  }
+}
+
+void read(const TomlNode& node, const KeyPath& path, const Allowed& allowed,
           std::map<std::string, double>& value) {
   expect_table(node, path);
   value.clear();

@@ -83,6 +83,14 @@ void require_subjects(const PreparedScenario& prepared) {
   }
 }
 
+Reach reach_of(const PreparedScenario& prepared, std::uint64_t seed) {
+  LinkPlan plan =
+      prepared.links ? *prepared.links : make_link_plan(prepared.scenario, prepared.places, seed);
+  return {.topology = std::move(plan.topology),
+          .changes = std::move(plan.changes),
+          .positions_m = positions_of(prepared.places)};
+}
+
 TalkPhase talk_phase_of(const std::string& name) {
   if (name == "staggered") return TalkPhase::staggered;
   return name == "together" ? TalkPhase::together : TalkPhase::random;
@@ -116,18 +124,19 @@ std::shared_ptr<const PreparedScenario> prepare(Scenario scenario, const Catalog
   prepared->scenario = std::move(scenario);
   const Scenario& s = prepared->scenario;
   prepared->names = agent_names(s);
-  const auto places = agent_positions(s);
+  prepared->places = agent_positions(s);
   for (const AgentSpec& spec : s.agents) {
     for (int i = 0; i < spec.count; ++i) prepared->specs.push_back(&spec);
   }
-  prepared->topology = topology_of(s, places);
+  if (!is_drawn(s.radio)) prepared->links = make_link_plan(s, prepared->places, s.seed);
   prepared->series = metrics_of(s.record);
   prepared->observations.resize(prepared->specs.size());
   for (const TargetSpec& target : s.world.targets) {
     prepared->subjects.push_back({target.name, target.position_m});
   }
   for (std::size_t i = 0; i < prepared->specs.size(); ++i) {
-    prepared->sensors.push_back(position_sensors(*prepared->specs[i], s.world, places[i]));
+    prepared->sensors.push_back(
+        position_sensors(*prepared->specs[i], s.world, prepared->places[i]));
   }
   if (s.world.log) prepare_log(*prepared, logs);
   require_subjects(*prepared);
@@ -144,8 +153,8 @@ Run::Run(std::shared_ptr<const PreparedScenario> prepared, const Catalog& catalo
                    .record = {.keep_messages = prepared_->scenario.record.messages == "all",
                               .digest = options.digest,
                               .ledger_digest = options.ledger_digest}}),
-      radio_(std::make_unique<Radio>(simulation_, prepared_->topology,
-                                     radio_options(prepared_->scenario.radio))) {
+      radio_(std::make_unique<Radio>(simulation_, reach_of(*prepared_, options.seed),
+                                     radio_options(prepared_->scenario))) {
   simulation_.name_of_agent = [this](AgentId id) {
     return id >= 0 ? prepared_->names[static_cast<std::size_t>(id)] : std::string("central");
   };

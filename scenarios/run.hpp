@@ -16,6 +16,7 @@
 #include "agents/estimator_agent.hpp"
 #include "agents/witness.hpp"
 #include "scenarios/life.hpp"
+#include "scenarios/links.hpp"
 #include "scenarios/loader.hpp"
 #include "scenarios/scenario.hpp"
 #include "sim/world/mrclam.hpp"
@@ -41,11 +42,12 @@ class LogCache {
 struct PreparedScenario {
   Scenario scenario;
   Time end;
-  std::vector<std::string> names;       ///< of agents
-  std::vector<const AgentSpec*> specs;  ///< of each agent, into `scenario`
-  Topology topology = Topology::full(1);
-  std::vector<Subject> subjects;                       ///< empty: nothing for the witness to watch
-  std::vector<std::vector<PositionSensor>> sensors;    ///< of each agent
+  std::vector<std::string> names;                    ///< of agents
+  std::vector<const AgentSpec*> specs;               ///< of each agent, into `scenario`
+  AgentPlaces places;                                ///< of agents
+  std::optional<LinkPlan> links;                     ///< unless the graph is drawn anew in each run
+  std::vector<Subject> subjects;                     ///< empty: nothing for the witness to watch
+  std::vector<std::vector<PositionSensor>> sensors;  ///< of each agent
   std::vector<std::vector<Observation>> observations;  ///< of each agent, from a log
   std::shared_ptr<const mrclam::Dataset> log;
   std::vector<Metric> series;

@@ -11,15 +11,59 @@ namespace {
 using Models = std::vector<RadioModelInfo>;
 
 Models transmitters() {
-  return {{"transmitter",
-           "first-in-first-out",
-           "",
-           "packets leave one after another at rate_bps; one beyond the queue's bound is dropped",
-           {"radio.rate_bps", "radio.header_bytes", "radio.queue_packets_max"},
-           "a queue with one server: L. Kleinrock, Queueing systems 1, 1975"}};
+  const std::string by = "radio.queue_policy";
+  const std::vector<std::string> bounds = {"radio.queue_packets_max", "radio.queue_bytes_max",
+                                           "radio.queue_wait_max_s"};
+  return {
+      {"transmitter",
+       "first-in-first-out",
+       "",
+       "packets leave one after another at rate_bps, in frames of at most mtu_bytes; a lost "
+       "frame loses its packet",
+       {"radio.rate_bps", "radio.header_bytes", "radio.mtu_bytes", "radio.half_duplex"},
+       "a queue with one server: L. Kleinrock, Queueing systems 1, 1975"},
+      {"queue", "drop-new", by, "a packet that finds the queue full is dropped", bounds, ""},
+      {"queue", "drop-oldest", by, "a full queue drops who has waited longest", bounds, ""},
+      {"queue", "replace", by,
+       "a newer packet of the same kind, receiver and subject takes the place of one that waits",
+       bounds, "age of information: S. Kaul, R. Yates, M. Gruteser, INFOCOM 2012"},
+      {"service",
+       "acknowledged",
+       "",
+       "a packet to one hearer is repeated until its acknowledgement comes back",
+       {"agents.talk.acknowledged", "radio.acknowledgement."},
+       "stop-and-wait: A. S. Tanenbaum, Computer networks"}};
+}
+
+Models sharings() {
+  const std::string by = "radio.sharing.model";
+  const std::string capture = "radio.sharing.capture_db";
+  return {{"sharing", "none", by, "all send at will, packets pass through one another", {}, ""},
+          {"sharing",
+           "slotted-aloha",
+           by,
+           "a frame is sent in the next slot, with a probability; frames that overlap are lost",
+           {"radio.sharing.slot_s", "radio.sharing.send_probability", capture},
+           "L. G. Roberts, ALOHA packet system with and without slots and capture, 1975"},
+          {"sharing",
+           "carrier-sense",
+           by,
+           "who has a frame counts down a random number of idle slots; who cannot hear each other "
+           "may collide",
+           {"radio.sharing.slot_s", "radio.sharing.interframe_s", "radio.sharing.window_min",
+            "radio.sharing.window_max", capture},
+           "IEEE 802.11 DCF: G. Bianchi, IEEE JSAC 18(3), 2000"},
+          {"sharing",
+           "tdma",
+           by,
+           "agent i sends in slots i, i + slots, i + 2 slots, ...",
+           {"radio.sharing.slot_s", "radio.sharing.slots", capture},
+           "time division"}};
 }
 
 Models latencies() {
+  const std::string by = "radio.jitter.law";
+  const std::vector<std::string> jitter = {"radio.jitter.spread_s", "radio.jitter.order"};
   return {{"latency",
            "constant",
            "",
@@ -31,7 +75,11 @@ Models latencies() {
            "",
            "arrival is later by distance / speed",
            {"radio.propagation_m_per_s"},
-           "speed of light or sound"}};
+           "speed of light or sound"},
+          {"jitter", "none", by, "no latency beside the constant one", {}, ""},
+          {"jitter", "uniform", by, "up to spread_s more, drawn for each packet and hearer", jitter,
+           ""},
+          {"jitter", "exponential", by, "spread_s more on average, with a long tail", jitter, ""}};
 }
 
 Models propagations() {
@@ -86,7 +134,51 @@ Models topologies() {
           {"topology", "ring", by, "a line whose ends are joined", {}, ""},
           {"topology", "star", by, "agent 0 in the middle", {}, ""},
           {"topology", "full", by, "everybody hears everybody", {}, ""},
+          {"topology",
+           "binary-tree",
+           by,
+           "agent i hears its parent (i - 1)/2 and its children",
+           {},
+           ""},
+          {"topology",
+           "grid",
+           by,
+           "rows of so many agents; each hears its four neighbours",
+           {"radio.columns"},
+           ""},
+          {"topology",
+           "erdos-renyi",
+           by,
+           "each pair hears each other with a probability, drawn anew for each seed",
+           {"radio.link_probability"},
+           "P. Erdos, A. Renyi, Publicationes Mathematicae 6, 1959; E. N. Gilbert 1959"},
+          {"topology",
+           "small-world",
+           by,
+           "a ring on which each hears its nearest, and links lead elsewhere with a probability",
+           {"radio.mean_degree", "radio.rewire_probability"},
+           "D. J. Watts, S. H. Strogatz, Nature 393, 1998"},
+          {"topology",
+           "random-geometric",
+           by,
+           "agents stand at random in a square and hear who is within range_m",
+           {"radio.side_m", "radio.range_m"},
+           "M. Penrose, Random geometric graphs, 2003"},
           {"topology", "edges", by, "the pairs that the file names", {"radio.edges"}, ""},
+          {"topology",
+           "contacts",
+           by,
+           "links come and go as a recorded trace says",
+           {"radio.contacts"},
+           "contact traces of delay-tolerant networking"},
+          {"schedule", "outages", "", "links are down for a while", {"radio.outages."}, ""},
+          {"schedule",
+           "partitions",
+           "",
+           "groups of agents do not hear one another for a while",
+           {"radio.partitions."},
+           ""},
+          {"schedule", "rotation", "", "groups are cut off in turn", {"radio.rotation."}, ""},
           {"topology",
            "disk",
            by,
@@ -138,7 +230,8 @@ const std::vector<RadioModelInfo>& radio_models() {
   static const Models all = [] {
     Models models;
     // A new part of the network, or a new model of a part, is added here and shown everywhere.
-    for (const auto part : {transmitters, latencies, propagations, losses, topologies, faults}) {
+    for (const auto part :
+         {transmitters, sharings, latencies, propagations, losses, topologies, faults}) {
       Models of_part = part();
       std::move(of_part.begin(), of_part.end(), std::back_inserter(models));
     }

@@ -66,10 +66,11 @@ TEST_F(Overrides, ErrorsNameTheOptionInPlaceOfALine) {
   EXPECT_EQ(error({"agents[0].sensor.period_s=-1"}),
             "--set agents[0].sensor.period_s=-1: agents[0].sensor.period_s = -1: must be greater "
             "than 0");
-  EXPECT_EQ(error({"agents.estimator.fusion=ci-dett"}),
-            "--set agents.estimator.fusion=ci-dett: agents[0].estimator.fusion = \"ci-dett\": "
-            "unknown; allowed: none, naive, channel, channel-robust, ci-det, ci-trace; did you "
-            "mean 'ci-det'?");
+  EXPECT_EQ(
+      error({"agents.estimator.fusion=ci-dett"}),
+      "--set agents.estimator.fusion=ci-dett: agents[0].estimator.fusion = \"ci-dett\": "
+      "unknown; allowed: none, naive, local-update, channel, channel-robust, ci-det, ci-trace; "
+      "did you mean 'ci-det'?");
   EXPECT_EQ(error({"radio.topology=disk"}),
             "--set radio.topology=disk: radio.topology: \"disk\" needs radio.range_m above 0");
   EXPECT_EQ(error({"radio.loss={probablity=0.5}"}),

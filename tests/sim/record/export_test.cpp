@@ -21,7 +21,7 @@ TEST(Export, WritesEveryTableWithHeaderAndCountsItsRows) {
   EXPECT_THAT(counts,
               testing::ElementsAre(Count("study", 1), Count("run", 3), Count("axis", 6),
                                    Count("agent", 9), Count("scalar", 6), Count("series", 36),
-                                   Count("message", 6), Count("event", 6)));
+                                   Count("message", 6), Count("link", 6), Count("event", 6)));
   for (const auto& [table, rows] : counts) {
     const std::string text = read_text(directory / ("deep/csv/" + table + ".csv"));
     EXPECT_GE(std::count(text.begin(), text.end(), '\r'), rows + 1) << table;
@@ -29,7 +29,9 @@ TEST(Export, WritesEveryTableWithHeaderAndCountsItsRows) {
   EXPECT_THAT(read_text(directory / "deep/csv/series.csv"),
               testing::StartsWith("run,t_s,agent,subject,name,value\r\n"
                                   "1,20,-1,alarm,nees,0.8571428571428572\r\n"));
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(directory / "deep/csv"), {}), 8);
+  EXPECT_EQ(read_text(directory / "deep/csv/link.csv").substr(0, 67),
+            "run,sender,receiver,fate,packets\r\n1,0,1,delivered,1\r\n1,1,0,lost,2\r\n");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(directory / "deep/csv"), {}), 9);
 }
 
 TEST(Export, QuotesWhatNeedsItAndTellsNullFromEmpty) {

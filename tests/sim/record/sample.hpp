@@ -61,6 +61,8 @@ inline void fill(Record& record, std::int64_t id) {
                     record.name(id % 2 == 0 ? "delivered" : "lost")});
     record.event(time, id % 2 == 0 ? AgentId{1} : no_agent, "overflow", "at " + std::to_string(id));
   }
+  record.link({0, 1, record.name("delivered"), static_cast<std::uint64_t>(id)});
+  record.link({1, 0, record.name("lost"), 2});
   record.scalar(0, record.name("fusions"), static_cast<double>(id));
   record.scalar(central_agent, record.name("state_dimension"), 2.0);
 }

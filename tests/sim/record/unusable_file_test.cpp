@@ -72,7 +72,7 @@ TEST(UnusableFile, OfAnotherVersionIsRefusedByBothVersions) {
   const sample::Directory directory;
   const std::string file = sample::make(directory, "a.db", 1);
   sample::change(file, "PRAGMA user_version = 7");
-  const std::string message = file + ": has schema version 7; this program reads 1";
+  const std::string message = file + ": has schema version 7; this program reads 2";
   EXPECT_EQ(writing(file), message);
   EXPECT_EQ(reading(file), message);
   EXPECT_THROW(first_difference(file, file, {}), InputError);

@@ -99,7 +99,8 @@ class Verbs(Bed):
     def test_list_shows_what_there_is(self):
         rules = json.loads(self.good("list", "rules", "--json"))["rules"]
         names = [rule["name"] for rule in rules]
-        self.assertEqual(names, ["none", "naive", "channel", "channel-robust", "ci-det", "ci-trace"])
+        self.assertEqual(names, ["none", "naive", "local-update", "channel", "channel-robust", "ci-det",
+                                 "ci-trace"])
         for rule in rules:
             self.assertTrue(rule["assumes"] and rule["conservative"] and rule["source"])
         self.assertIn("rumour/rumour.study.toml", self.good("list", "scenarios"))

@@ -37,9 +37,8 @@ Channel::Channel(Simulation& simulation, Topology topology, const RadioOptions& 
     hearers_max_ = std::max(hearers_max_, topology_.neighbours(a).size());
   }
   link_packets_.resize(topology_.links(), 0);
-  if (jitter_.law != JitterOptions::Law::none) {
-    link_launched_.resize(topology_.links(), 0);
-    if (!jitter_.reordering) link_arrival_.resize(topology_.links());
+  if (jitter_.law != JitterOptions::Law::none && !jitter_.reordering) {
+    link_arrival_.resize(topology_.links(), Time() - 1_ns);
   }
   if (std::isfinite(propagation_m_per_s_)) order_arrivals();
 }
@@ -65,6 +64,7 @@ std::span<const AgentId> Channel::neighbours(AgentId agent) { return topology_.n
 
 void Channel::route(Transmission& t) {
   t.route = Route{};
+  t.way = Duration();
   t.aimed = true;
   const std::size_t first = topology_.first_link(t.sender);
   if (t.receiver == no_agent) {
@@ -82,7 +82,8 @@ void Channel::route(Transmission& t) {
   if (!t.route.reaches) return;
   t.route.first_link = static_cast<std::uint32_t>(link);
   if (ears_.empty()) return;
-  t.ears.assign(1, {way(t.route.first_link), t.receiver, t.route.first_link});
+  t.way = way(t.route.first_link);
+  t.ears.assign(1, {t.way, t.receiver, t.route.first_link});
   t.route.ears = t.ears.data();
 }
 
@@ -102,9 +103,13 @@ void Channel::aim(Transmission& t, bool draws) {
     return;
   }
   draws = draws && !loss_.never();
+  const bool numbered = jitter_.law != JitterOptions::Law::none && !t.has_tick;
+  t.numbers.clear();
+  if (numbered) t.numbers.reserve(hearers_max_);
   for (std::size_t i = 0; i < t.route.size; ++i) {
     const std::uint64_t index = t.has_tick ? t.index : link_packets_[t.route.link(i)]++;
     if (t.receiver != no_agent) t.index = index;
+    if (numbered) t.numbers.push_back(index);
     const bool lost = draws && loss_.lost(on_link(t, i, index), t.frames);
     t.fates[i] = lost ? Fate::lost : Fate::delivered;
   }
@@ -130,21 +135,24 @@ void Channel::launch(Transmission& t) {
   if (jitter_.law != JitterOptions::Law::none && t.route.reaches) draw_jitter(t);
 }
 
+// A repetition has a jitter of its own, not on top of the last one's.
 void Channel::draw_jitter(Transmission& t) {
   sorting_.clear();
   for (std::size_t i = 0; i < t.route.size; ++i) {
     const std::uint32_t link = t.route.link(i);
-    const std::uint64_t index = t.has_tick ? t.index : link_launched_[link]++;
-    const PacketOnLink packet = on_link(t, i, index);
+    PacketOnLink packet = on_link(t, i, t.has_tick ? t.index : t.numbers[i]);
+    packet.repetition = static_cast<std::uint32_t>(t.repetition);
     FrameDraws draws(packet, jitter_draws);
     const double spread_s = jitter_.spread.seconds();
     const double jitter_s = jitter_.law == JitterOptions::Law::uniform
                                 ? spread_s * draws.next()
                                 : -spread_s * math::log(1.0 - draws.next());
-    Duration delay = t.route.delay(i) + at_most_9e9(jitter_s);
+    const Duration pure = t.receiver == no_agent ? t.route.delay(i) : t.way;
+    Duration delay = later(Time::at(pure), at_most_9e9(jitter_s)).since_start();
     if (!jitter_.reordering) {
+      // Not at the same instant: there, who is first depends on what else the packets have to do.
       Time& last = link_arrival_[link];
-      last = std::max(last, later(t.arrives, delay));
+      last = std::max(later(last, 1_ns), later(t.arrives, delay));
       delay = last - t.arrives;
     }
     sorting_.emplace_back(Ear{delay, t.route.hearer(i), link}, t.fates[i]);
@@ -152,6 +160,7 @@ void Channel::draw_jitter(Transmission& t) {
   std::sort(sorting_.begin(), sorting_.end(),
             [](const auto& a, const auto& b) { return arrives_before(a.first, b.first); });
   t.ears.clear();
+  t.ears.reserve(hearers_max_);
   for (std::size_t i = 0; i < sorting_.size(); ++i) {
     t.ears.push_back(sorting_[i].first);
     t.fates[i] = sorting_[i].second;

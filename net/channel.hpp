@@ -63,9 +63,8 @@ class Channel {
   // The neighbours of each sender in order of arrival, rows as in the topology. Empty if the way
   // takes no time: then they hear at once.
   std::vector<Ear> ears_;
-  std::vector<std::uint64_t> link_packets_;   // packets without tick so far, a link
-  std::vector<std::uint64_t> link_launched_;  // with jitter: packets without tick that have left
-  std::vector<Time> link_arrival_;            // in-order jitter: the last arrival, a link
+  std::vector<std::uint64_t> link_packets_;  // packets without tick so far, a link
+  std::vector<Time> link_arrival_;           // in-order jitter: the last arrival, a link
   std::vector<std::pair<Ear, Fate>> sorting_;
 };
 

@@ -44,9 +44,10 @@ inline Time later(Time time, Duration span) {
 }
 
 struct Transmission {
-  std::vector<std::byte> bytes;  // vectors keep their room for the slot's next packet
-  std::vector<Fate> fates;       // of the hearers in order of arrival, as far as known
-  std::vector<Ear> ears;         // if the route is this packet's own
+  std::vector<std::byte> bytes;        // vectors keep their room for the slot's next packet
+  std::vector<Fate> fates;             // of the hearers in order of arrival, as far as known
+  std::vector<Ear> ears;               // if the route is this packet's own
+  std::vector<std::uint64_t> numbers;  // with jitter: of a packet without tick, on each link
   // Where the channel is shared: who is disturbed by a frame that is not for them. (What would be
   // its fate there is of no interest.)
   std::vector<AgentId> overhearers;
@@ -56,6 +57,7 @@ struct Transmission {
   Time sent, start, end;  // handed over; first bit of this attempt; last bit of what began
   Time arrives;           // at hearers without a delay of their own
   Route route;
+  Duration way;  // to an addressee and back, without jitter
   std::uint64_t serial = 0;
   std::uint64_t index = 0;  // its number for draws: the tick if it has one
   std::uint64_t subject = 0;
@@ -65,12 +67,14 @@ struct Transmission {
   std::uint32_t frames = 1;
   std::uint32_t frames_sent = 0;  // of this attempt
   int repetition = 0;
-  Fate answer = Fate::lost;  // of the acknowledgement
+  Fate answer = Fate::lost;       // of the acknowledgement
+  Time answer_start, answer_end;  // from its first bit to its last
   NameId kind = 0;
   bool has_tick = false;
   bool acknowledged = false;  // wants to be
   bool aimed = false;         // its route is known
   bool answering = false;     // an acknowledgement is on the air
+  bool cut = false;           // its sender has failed meanwhile: nothing more of it is sent
   bool under_way = false;
 
   bool done() const { return settled == route.size; }
@@ -104,6 +108,7 @@ class TransmissionPool {
     t.repetition = 0;
     t.aimed = false;
     t.answering = false;
+    t.cut = false;
     t.under_way = true;
     t.serial = taken_++;
     return slot;

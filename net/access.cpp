@@ -21,6 +21,9 @@ void check(const AccessOptions& options) {
   if (options.interframe < Duration()) {
     refuse("interframe_s", "at least 0", options.interframe.seconds());
   }
+  if (options.interframe_garbled < Duration()) {
+    refuse("interframe_garbled_s", "at least 0", options.interframe_garbled.seconds());
+  }
   if (options.window_min < 1 || options.window_min > 65536) {
     refuse("window_min", "in [1, 65536]", options.window_min);
   }
@@ -43,16 +46,17 @@ class Slotted final : public Access {
     for (const EventId grant : grants_) simulation_.cancel(grant);
   }
 
-  void request(AgentId radio, int) override {
-    const Duration now = simulation_.now().since_start();
-    const Duration whole = now - now % options_.slot;
-    std::int64_t slot = whole / options_.slot + (whole < now ? 1 : 0);
+  void request(AgentId radio, int, Time earliest) override {
+    const Duration from = std::max(simulation_.now(), earliest).since_start();
+    const Duration whole = from - from % options_.slot;
+    std::int64_t slot = whole / options_.slot + (whole < from ? 1 : 0);
     if (options_.sharing == Sharing::tdma) {
       const std::int64_t early = (slot - radio) % cycle_;
       if (early != 0) slot += early < 0 ? -early : cycle_ - early;
     } else {
       slot += passed_over(radio);
     }
+    if (slot > Time::never().since_start() / options_.slot) return;  // after the last instant
     grants_[index(radio)] = simulation_.schedule(Time::at(options_.slot * slot), Phase::update,
                                                  [this, radio] { user_.granted(radio); });
   }
@@ -93,7 +97,8 @@ class CarrierSense final : public Access, public AirListener {
     for (const Station& station : stations_) simulation_.cancel(station.grant);
   }
 
-  void request(AgentId radio, int repetition) override {
+  // (What the radio itself sends takes the air, too: `earliest` says nothing new.)
+  void request(AgentId radio, int repetition, Time) override {
     Station& station = stations_[index(radio)];
     std::int64_t window = options_.window_min;
     for (int i = 0; i < repetition && window < options_.window_max; ++i) window *= 2;
@@ -106,7 +111,7 @@ class CarrierSense final : public Access, public AirListener {
   }
   void withdraw(AgentId radio) override {
     Station& station = stations_[index(radio)];
-    station.wants = false;
+    station.wants = station.counts = false;
     simulation_.cancel(station.grant);
   }
   AirListener* listener() override { return this; }
@@ -115,14 +120,15 @@ class CarrierSense final : public Access, public AirListener {
     Station& station = stations_[index(radio)];
     station.taken = true;
     const Time now = simulation_.now();
-    if (!station.wants || station.sends_at <= now) return;  // too late to hold back
+    if (!station.counts || station.sends_at <= now) return;  // too late to hold back
+    station.counts = false;
     simulation_.cancel(station.grant);
     if (now > station.counts_from) station.slots -= (now - station.counts_from) / options_.slot;
   }
   void air_free(AgentId radio, bool garbled) override {
     Station& station = stations_[index(radio)];
     station.taken = false;
-    if (!station.wants) return;
+    if (!station.wants || station.counts) return;
     count_down(radio, options_.interframe + (garbled ? options_.interframe_garbled : Duration()));
   }
 
@@ -134,15 +140,20 @@ class CarrierSense final : public Access, public AirListener {
     std::int64_t slots = 0;  // still to pass
     std::uint64_t requests = 0;
     bool wants = false;
-    bool taken = false;  // the air
+    bool counts = false;  // down to its grant
+    bool taken = false;   // the air
   };
   static std::size_t index(AgentId radio) { return static_cast<std::size_t>(radio); }
   void count_down(AgentId radio, Duration space) {
     Station& station = stations_[index(radio)];
-    station.counts_from = simulation_.now() + space;
-    station.sends_at = station.counts_from + options_.slot * station.slots;
+    const Time now = simulation_.now();
+    station.counts = true;
+    station.counts_from = space < Time::never() - now ? now + space : Time::never();
+    const bool in_time = station.slots <= (Time::never() - station.counts_from) / options_.slot;
+    station.sends_at =
+        in_time ? station.counts_from + options_.slot * station.slots : Time::never();
     station.grant = simulation_.schedule(station.sends_at, Phase::update, [this, radio] {
-      stations_[index(radio)].wants = false;
+      stations_[index(radio)].wants = stations_[index(radio)].counts = false;
       user_.granted(radio);
     });
   }

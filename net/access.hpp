@@ -45,9 +45,10 @@ class AccessUser {
 class Access {
  public:
   virtual ~Access() = default;
-  /// `radio`, which neither sends nor has asked, wants to send a frame for the `repetition`-th time
-  /// after the first. AccessUser::granted(radio) follows from an event of its own.
-  virtual void request(AgentId radio, int repetition) = 0;
+  /// `radio`, which has not asked, wants to send a frame for the `repetition`-th time after the
+  /// first, not before `earliest`: until then it sends something else. AccessUser::granted(radio)
+  /// follows from an event of its own.
+  virtual void request(AgentId radio, int repetition, Time earliest) = 0;
   /// It does not want to any more. Nothing happens if it did not ask.
   virtual void withdraw(AgentId radio) = 0;
   /// Wants to know about the air; null if it does not care.

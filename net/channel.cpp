@@ -23,8 +23,8 @@ bool arrives_before(const Ear& a, const Ear& b) {
 }
 
 template <class T>
-T& at_link(std::vector<T>& values, std::uint32_t link) {
-  if (values.size() <= link) values.resize(std::bit_ceil(std::size_t{link} + 1));
+T& at_link(std::vector<T>& values, std::uint32_t link, const T& first = {}) {
+  if (values.size() <= link) values.resize(std::bit_ceil(std::size_t{link} + 1), first);
   return values[link];
 }
 
@@ -51,7 +51,7 @@ Channel::Channel(Simulation& simulation, Reach reach, const RadioOptions& option
       numbers_links_(options.count_links ||
                      (jitter_.law != JitterOptions::Law::none && !jitter_.reordering)),
       certain_(propagation_.certain()),
-      keeps_numbers_(!jammers_.none() && propagation_.has_powers()) {
+      noisy_(!jammers_.none() && propagation_.has_powers()) {
   require(topology_.links() < UINT32_MAX, "radio: more than 2^32 links");
   const bool placed = places_ != nullptr || topology_.has_lengths();
   if (std::isfinite(propagation_m_per_s_) && !placed) {
@@ -72,6 +72,9 @@ Channel::Channel(Simulation& simulation, Reach reach, const RadioOptions& option
     for (AgentId a = 0; a < topology_.agents(); ++a) {
       for (const AgentId b : topology_.neighbours(a)) link_quality_.push_back(quality(a, b, 0.0));
     }
+  }
+  if (jitter_.law != JitterOptions::Law::none && !jitter_.reordering) {
+    link_arrival_.resize(topology_.links(), Time() - 1_ns);
   }
   schedule_change();
 }
@@ -131,6 +134,7 @@ std::uint32_t Channel::number(AgentId from, AgentId to) {
 
 void Channel::route(Transmission& t) {
   t.route = Route{};
+  t.way = Duration();
   t.aimed = true;
   if (places_) return route_moving(t);
   const std::size_t first = topology_.first_link(t.sender);
@@ -149,8 +153,8 @@ void Channel::route(Transmission& t) {
   if (!t.route.reaches) return;
   t.route.first_link = static_cast<std::uint32_t>(link);
   if (ears_.empty()) return;
-  const double length_m = topology_.length_m(t.route.first_link);
-  t.ears.assign(1, {way(length_m), t.receiver, t.route.first_link});
+  t.way = way(topology_.length_m(t.route.first_link));
+  t.ears.assign(1, {t.way, t.receiver, t.route.first_link});
   t.route.ears = t.ears.data();
 }
 
@@ -171,6 +175,7 @@ void Channel::route_moving(Transmission& t) {
     const double distance = distance_m(t.sender, t.receiver);
     t.route.reaches = distance <= propagation_.reach_m();
     hears(t.receiver, distance * distance);
+    t.way = t.ears[0].delay;
   }
   t.route.size = t.ears.size();
   t.route.ears = t.ears.data();
@@ -228,13 +233,15 @@ void Channel::aim(Transmission& t, bool draws) {
     t.fates[0] = Fate::out_of_range;
     return;
   }
-  if (keeps_numbers_) t.numbers.resize(t.fates.size());
+  const bool numbered = noisy_ || (jitter_.law != JitterOptions::Law::none && !t.has_tick);
+  t.numbers.clear();
+  if (numbered) t.numbers.reserve(t.fates.size());
   const bool lossy = draws && !loss_.never();
   const bool fading = draws && !certain_;
   for (std::size_t i = 0; i < t.route.size; ++i) {
     const std::uint64_t index = t.has_tick ? t.index : at_link(link_packets_, t.route.link(i))++;
     if (t.receiver != no_agent) t.index = index;
-    if (keeps_numbers_) t.numbers[i] = index;
+    if (numbered) t.numbers.push_back(index);
     const PacketOnLink packet = on_link(t, i, index);
     const bool gone = (lossy && loss_.lost(packet, t.frames)) || (fading && !heard(packet, t, 0.0));
     t.fates[i] = gone ? Fate::lost : Fate::delivered;
@@ -281,32 +288,37 @@ void Channel::launch(Transmission& t) {
   if (jitter_.law != JitterOptions::Law::none && t.route.reaches) draw_jitter(t);
 }
 
+// A repetition has a jitter of its own, not on top of the last one's.
 void Channel::draw_jitter(Transmission& t) {
   sorting_.clear();
   for (std::size_t i = 0; i < t.route.size; ++i) {
     const std::uint32_t link = t.route.link(i);
-    const std::uint64_t index = t.has_tick ? t.index : at_link(link_launched_, link)++;
-    FrameDraws draws(on_link(t, i, index), jitter_draws);
+    PacketOnLink packet = on_link(t, i, t.has_tick ? t.index : t.numbers[i]);
+    packet.repetition = static_cast<std::uint32_t>(t.repetition);
+    FrameDraws draws(packet, jitter_draws);
     const double spread_s = jitter_.spread.seconds();
     const double jitter_s = jitter_.law == JitterOptions::Law::uniform
                                 ? spread_s * draws.next()
                                 : -spread_s * math::log(1.0 - draws.next());
-    Duration delay = t.route.delay(i) + at_most_9e9(jitter_s);
+    const Duration pure = t.receiver == no_agent ? t.route.delay(i) : t.way;
+    Duration delay = later(Time::at(pure), at_most_9e9(jitter_s)).since_start();
     if (!jitter_.reordering) {
-      Time& last = at_link(link_arrival_, link);
-      last = std::max(last, later(t.arrives, delay));
+      // Not at the same instant: there, who is first depends on what else the packets have to do.
+      Time& last = at_link(link_arrival_, link, Time() - 1_ns);
+      last = std::max(later(last, 1_ns), later(t.arrives, delay));
       delay = last - t.arrives;
     }
     sorting_.push_back(
-        {{delay, t.route.hearer(i), link}, t.fates[i], keeps_numbers_ ? t.numbers[i] : 0});
+        {{delay, t.route.hearer(i), link}, t.fates[i], t.numbers.empty() ? 0 : t.numbers[i]});
   }
   std::sort(sorting_.begin(), sorting_.end(),
             [](const Sorted& a, const Sorted& b) { return arrives_before(a.ear, b.ear); });
   t.ears.clear();
+  t.ears.reserve(t.fates.size());
   for (std::size_t i = 0; i < sorting_.size(); ++i) {
     t.ears.push_back(sorting_[i].ear);
     t.fates[i] = sorting_[i].fate;
-    if (keeps_numbers_) t.numbers[i] = sorting_[i].number;
+    if (!t.numbers.empty()) t.numbers[i] = sorting_[i].number;
   }
   t.route.ears = t.ears.data();
 }

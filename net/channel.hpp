@@ -118,7 +118,7 @@ class Channel {
   bool powers_;                  // are of interest
   bool numbers_links_;           // although radios move
   bool certain_;                 // who is in reach hears
-  bool keeps_numbers_;           // jammers make noise, so that the draws are needed again
+  bool noisy_;                   // jammers add to the noise, so that the draws are needed again
   std::size_t hearers_max_ = 1;  // of anybody's broadcast; an addressed packet has one
   // The neighbours of each sender in order of arrival, rows as in the topology. Empty if the way
   // takes no time: then they hear at once.
@@ -126,7 +126,6 @@ class Channel {
   std::vector<LinkQuality> link_quality_;           // of radios that stand, unless certain
   std::map<std::uint64_t, std::uint32_t> numbers_;  // of links of moving radios, by both ends
   std::vector<std::uint64_t> link_packets_;         // packets without tick so far, a link
-  std::vector<std::uint64_t> link_launched_;        // with jitter: those that have left
   std::vector<Time> link_arrival_;                  // in-order jitter: the last arrival, a link
   struct Sorted {
     Ear ear;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 #include <string>
 #include <utility>
 
@@ -91,6 +92,20 @@ void Radio::require_sound(AgentId sender, const Outgoing& packet) const {
   }
 }
 
+// In the slotted ways a frame must fit into its slot.
+void Radio::require_fits_slot(std::uint64_t bytes) {
+  const Sharing sharing = options_.access.sharing;
+  if (sharing != Sharing::slotted_aloha && sharing != Sharing::tdma) return;
+  if (options_.mtu_bytes) bytes = std::min<std::uint64_t>(bytes, *options_.mtu_bytes);
+  bytes += options_.header_bytes;
+  const Duration takes = air_time(bytes);
+  if (takes <= options_.access.slot) return;
+  std::ostringstream text;
+  text << "radio: a frame of " << bytes << " bytes with its header takes " << takes.seconds()
+       << " s, longer than slot_s = " << options_.access.slot.seconds();
+  throw InputError(text.str());
+}
+
 std::uint32_t Radio::take(AgentId sender, const Outgoing& packet) {
   const std::uint32_t slot = slots_.take();
   Transmission& t = slots_[slot];
@@ -119,6 +134,7 @@ void Radio::aim(Transmission& t, bool draws) {
 
 bool Radio::send(AgentId sender, const Outgoing& packet) {
   require_sound(sender, packet);
+  require_fits_slot(packet.bytes.size());
   Station& from = station(sender);
   ++traffic_.sender(sender).packets;
   const std::uint32_t slot = take(sender, packet);
@@ -126,7 +142,7 @@ bool Radio::send(AgentId sender, const Outgoing& packet) {
     settle_rest(slot, Fate::sender_down);
     return false;
   }
-  if (!access_ && from.waiting.empty() && !from.sends(simulation_.now())) {
+  if (!access_ && from.waiting.empty() && !busy(sender, simulation_.now())) {
     begin(slot);
     return true;
   }
@@ -144,8 +160,8 @@ bool Radio::admit(AgentId sender, std::uint32_t slot) {
   const QueueOptions& queue = options_.queue;
   const std::uint64_t bytes = air_bytes(slots_[slot].bytes.size());
   if (channel_.foreseen()) aim(slots_[slot], true);
-  if (queue.policy == QueuePolicy::replace && replace_waiting(sender, slot)) return true;
   drop_expired(sender);
+  if (queue.policy == QueuePolicy::replace && replace_waiting(sender, slot)) return true;
   const bool sends = from.sends(simulation_.now());
   const std::uint64_t sending_bytes = sends ? air_bytes(slots_[from.on_air].bytes.size()) : 0;
   const auto full = [&] {
@@ -198,10 +214,7 @@ void Radio::schedule(std::uint32_t slot) {
 Fate Radio::fate_now(const Transmission& t, std::size_t i) const {
   Fate fate = t.fates[i];
   worsen(fate, channel_.on_arrival(t, i));
-  if (!up_since_.empty()) {
-    const auto hearer = static_cast<std::size_t>(t.route.hearer(i));
-    if (!stations_[hearer].up || up_since_[hearer] > t.start) worsen(fate, Fate::receiver_down);
-  }
+  if (!up_throughout(t.route.hearer(i), t.start)) worsen(fate, Fate::receiver_down);
   return fate;
 }
 
@@ -242,7 +255,7 @@ void Radio::set_up(AgentId agent, bool up) {
   if (up) return;
   if (access_) access_->withdraw(agent);
   while (!s.waiting.empty()) settle_rest(s.waiting.pop(), Fate::sender_down);
-  spoil_sending(agent);
+  cut_off(agent);
 }
 
 void Radio::finish() {
@@ -251,15 +264,18 @@ void Radio::finish() {
     Transmission& t = slots_[slot];
     simulation_.cancel(t.event);
     if (t.end > now) traffic_.sender(t.sender).air_time -= t.end - now;
+    if (t.answering) traffic_.sender(t.receiver).air_time -= t.answer_end - now;
     settle_rest(slot, Fate::in_flight_at_end);
   }
   for (AgentId agent = 0; agent < channel_.agents(); ++agent) {
     Station& s = station(agent);
     simulation_.cancel(s.next);
     s.next = EventId();
+    s.held = s.asked = false;
     if (access_) access_->withdraw(agent);
     while (!s.waiting.empty()) s.waiting.pop();
   }
+  if (receptions_) receptions_->clear();
   for (AgentId sender = 0; sender < channel_.agents(); ++sender) {
     require_balance(sender, counts(sender));
   }

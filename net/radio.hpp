@@ -75,7 +75,8 @@ class Radio final : private AccessUser {
   /// @return false if the packet was dropped: the queue was full, or the agent is down.
   /// @throws BrokenInvariant for a sender or addressee outside 0 … n−1, a tick of 2^48 or more,
   /// 4 GiB or more of bytes, more than frames_max frames, or a broadcast to be acknowledged.
-  /// @throws InputError for a packet that an empty queue has no room for.
+  /// @throws InputError for a packet that an empty queue has no room for, or of which a frame takes
+  /// longer than the slot that it must fit into (slotted ALOHA, TDMA).
   bool send(AgentId sender, const Outgoing& packet);
 
   /// The agent fails, or is back. While it is down it hears nothing; its packets that wait or are
@@ -122,6 +123,15 @@ class Radio final : private AccessUser {
     bool up = true;
     bool sends(Time now) const { return held || free_at > now; }
   };
+  // True if the transmitter is busy, be it with somebody else's acknowledgement.
+  bool busy(AgentId agent, Time now) const {
+    return stations_[static_cast<std::size_t>(agent)].sends(now) ||
+           (receptions_ && receptions_->sends_until(agent) > now);
+  }
+  bool up_throughout(AgentId agent, Time since) const {
+    const auto a = static_cast<std::size_t>(agent);
+    return up_since_.empty() || (stations_[a].up && up_since_[a] <= since);
+  }
   Station& station(AgentId agent) { return stations_[static_cast<std::size_t>(agent)]; }
   std::size_t index(AgentId agent, const char* role) const;
   std::uint64_t air_bytes(std::uint64_t bytes) const;
@@ -130,6 +140,7 @@ class Radio final : private AccessUser {
 
   // Hand-over and arrival (radio.cpp).
   void require_sound(AgentId sender, const Outgoing& packet) const;
+  void require_fits_slot(std::uint64_t bytes);
   std::uint32_t take(AgentId sender, const Outgoing& packet);
   void aim(Transmission& t, bool draws);
   bool admit(AgentId sender, std::uint32_t slot);
@@ -148,14 +159,16 @@ class Radio final : private AccessUser {
   void begin(std::uint32_t slot);
   void begin_frames(std::uint32_t slot);
   void end_frames(std::uint32_t slot);
-  void put_on_air(Transmission& t, AgentId from, AgentId to, Fate& fate);
+  void put_on_air(Transmission& t, AgentId from, AgentId to, Fate& fate, Time end);
   void take_off_air(Transmission& t, AgentId from, AgentId to, const Fate& fate);
   void let_go(AgentId sender);
-  void spoil_sending(AgentId sender);
+  void cut_off(AgentId sender);
   // Acknowledgement (radio_acknowledgement.cpp).
   void arrive_acknowledged(std::uint32_t slot);
   void answer(std::uint32_t slot);
   void end_answer(std::uint32_t slot);
+  void end_answer_on_air(std::uint32_t slot);
+  void repeat(std::uint32_t slot);
   void conclude(std::uint32_t slot, bool acknowledged);
 
   Simulation& simulation_;

@@ -27,49 +27,58 @@ void Radio::answer(std::uint32_t slot) {
   Transmission& t = slots_[slot];
   const Time now = simulation_.now();
   const Duration span = air_time(options_.acknowledgement.bytes);
+  const AgentId from = t.receiver;
+  // Who fails, or sends something else just then, does not answer.
+  const bool mute = !station(from).up || (receptions_ && receptions_->sends_until(from) > now);
+  if (mute) worsen(t.answer, Fate::lost);
   if (t.answer == Fate::delivered) {
-    Station& from = station(t.receiver);
-    const bool mute = !from.up || (receptions_ && receptions_->sending(t.receiver));
-    if (mute) {
-      t.answer = Fate::lost;
-    } else {
-      SenderCounts& counts = traffic_.sender(t.receiver);
-      ++counts.acknowledgements;
-      counts.bytes_sent += options_.acknowledgement.bytes;
-      counts.air_time += span;
-      if (channel_.acknowledgement_lost(t)) t.answer = Fate::lost;
-      if (receptions_) {
-        from.free_at = std::max(from.free_at, later(now, span));
-        t.answering = true;
-        put_on_air(t, t.receiver, t.sender, t.answer);
-      }
-    }
+    t.answering = true;
+    t.answer_start = now;
+    t.answer_end = later(now, span);
+    SenderCounts& counts = traffic_.sender(from);
+    ++counts.acknowledgements;
+    counts.bytes_sent += options_.acknowledgement.bytes;
+    counts.air_time += t.answer_end - now;
+    if (channel_.acknowledgement_lost(t)) t.answer = Fate::lost;
+    if (receptions_) put_on_air(t, from, t.sender, t.answer, t.answer_end);
   }
-  const Duration way = t.route.delay(0) + options_.latency;
-  t.event = simulation_.schedule(later(now, span), Phase::update, [this, slot, way] {
-    Transmission& answered = slots_[slot];
-    if (answered.answering) {
-      answered.answering = false;
-      take_off_air(answered, answered.receiver, answered.sender, answered.answer);
-    }
-    answered.event = simulation_.schedule(later(simulation_.now(), way), Phase::update,
-                                          [this, slot] { end_answer(slot); });
-  });
+  t.event = simulation_.schedule(later(now, span), Phase::update,
+                                 [this, slot] { end_answer_on_air(slot); });
+}
+
+void Radio::end_answer_on_air(std::uint32_t slot) {
+  Transmission& t = slots_[slot];
+  const Time now = simulation_.now();
+  if (t.answering) {
+    t.answering = false;
+    if (receptions_) take_off_air(t, t.receiver, t.sender, t.answer);
+    if (!up_throughout(t.receiver, t.answer_start)) worsen(t.answer, Fate::sender_down);
+  }
+  t.event = simulation_.schedule(later(now, t.way + options_.latency), Phase::update,
+                                 [this, slot] { end_answer(slot); });
 }
 
 void Radio::end_answer(std::uint32_t slot) {
   Transmission& t = slots_[slot];
-  const Station& from = station(t.sender);
   t.event = EventId();
-  if (from.up && t.answer == Fate::delivered) return conclude(slot, true);
-  if (!from.up || t.repetition + 1 >= options_.acknowledgement.attempts_max) {
-    return conclude(slot, false);
-  }
+  if (t.cut) return conclude(slot, false);
+  if (t.answer == Fate::delivered) return conclude(slot, true);
+  if (t.repetition + 1 >= options_.acknowledgement.attempts_max) return conclude(slot, false);
   ++t.repetition;
   t.frames_sent = 0;
   t.fates[0] = channel_.repeat(t);
   if (access_) return ask(t.sender, t.repetition);
-  begin_frames(slot);
+  repeat(slot);
+}
+
+// Sends it again as soon as the sender has acknowledged what it got meanwhile.
+void Radio::repeat(std::uint32_t slot) {
+  Transmission& t = slots_[slot];
+  t.event = EventId();
+  if (t.cut) return conclude(slot, false);
+  const Time free = receptions_ ? receptions_->sends_until(t.sender) : Time();
+  if (free <= simulation_.now()) return begin_frames(slot);
+  t.event = simulation_.schedule(free, Phase::update, [this, slot] { repeat(slot); });
 }
 
 void Radio::conclude(std::uint32_t slot, bool acknowledged) {
@@ -78,7 +87,7 @@ void Radio::conclude(std::uint32_t slot, bool acknowledged) {
   if (!t.done()) {
     t.settled = 1;
     MessageRow row = t.row(simulation_.now());
-    const Fate fate = station(sender).up ? t.fates[0] : Fate::sender_down;
+    const Fate fate = t.cut ? Fate::sender_down : t.fates[0];
     traffic_.settle(row, t.receiver, t.route.link(0), fate);
   }
   let_go(sender);

@@ -1,4 +1,7 @@
 // How packets leave: from the queue to the air.
+#include <algorithm>
+#include <utility>
+
 #include "net/radio.hpp"
 #include "sim/kernel/error.hpp"
 
@@ -13,8 +16,9 @@ void Radio::wake(AgentId sender) {
     return;
   }
   if (from.next != EventId() || from.free_at == Time::never()) return;
-  from.next = simulation_.schedule(std::max(simulation_.now(), from.free_at), Phase::update,
-                                   [this, sender] { take_next(sender); });
+  Time time = std::max(simulation_.now(), from.free_at);
+  if (receptions_) time = std::max(time, receptions_->sends_until(sender));
+  from.next = simulation_.schedule(time, Phase::update, [this, sender] { take_next(sender); });
 }
 
 void Radio::take_next(AgentId sender) {
@@ -22,17 +26,20 @@ void Radio::take_next(AgentId sender) {
   from.next = EventId();
   drop_expired(sender);
   if (from.waiting.empty()) return;
-  if (!from.sends(simulation_.now())) begin(from.waiting.pop());
+  if (!busy(sender, simulation_.now())) begin(from.waiting.pop());
   if (!from.waiting.empty()) wake(sender);
 }
 
 void Radio::ask(AgentId sender, int repetition) {
   station(sender).asked = true;
-  access_->request(sender, repetition);
+  access_->request(sender, repetition, receptions_->sends_until(sender));
 }
 
 void Radio::granted(AgentId sender) {
   Station& from = station(sender);
+  if (receptions_->sends_until(sender) > simulation_.now()) {  // an acknowledgement came between
+    return ask(sender, from.held ? slots_[from.on_air].repetition : 0);
+  }
   from.asked = false;
   if (from.held) return begin_frames(from.on_air);
   drop_expired(sender);
@@ -42,10 +49,17 @@ void Radio::granted(AgentId sender) {
 void Radio::drop_expired(AgentId sender) {
   if (!options_.queue.wait_max) return;
   SendQueue& waiting = station(sender).waiting;
-  while (!waiting.empty() &&
-         simulation_.now() - slots_[waiting[0]].sent > *options_.queue.wait_max) {
-    settle_rest(waiting.pop(), Fate::expired);
+  const auto expired = [&](std::uint32_t slot) {
+    return simulation_.now() - slots_[slot].sent > *options_.queue.wait_max;
+  };
+  if (options_.queue.policy == QueuePolicy::replace) {  // the first need not be the oldest
+    return waiting.take_out([&](std::uint32_t slot) {
+      const bool goes = expired(slot);
+      if (goes) settle_rest(slot, Fate::expired);
+      return goes;
+    });
   }
+  while (!waiting.empty() && expired(waiting[0])) settle_rest(waiting.pop(), Fate::expired);
 }
 
 void Radio::begin(std::uint32_t slot) {
@@ -85,12 +99,13 @@ void Radio::begin_frames(std::uint32_t slot) {
     return schedule(slot);
   }
   if (t.receiver == no_agent) {
-    receptions_->begin_sending(t.sender);
+    const OnAir span{now, t.end};
+    receptions_->begin_sending(t.sender, span);
     for (std::size_t i = 0; i < t.route.size; ++i) {
-      receptions_->begin(t.route.hearer(i), t.fates[i], channel_.power_dbm(t, i));
+      receptions_->begin(t.route.hearer(i), t.fates[i], channel_.power_dbm(t, i), span);
     }
   } else {
-    put_on_air(t, t.sender, t.receiver, t.fates[0]);
+    put_on_air(t, t.sender, t.receiver, t.fates[0], t.end);
   }
   if (t.end == Time::never()) return;
   t.event = simulation_.schedule(t.end, Phase::update, [this, slot] { end_frames(slot); });
@@ -108,22 +123,23 @@ void Radio::end_frames(std::uint32_t slot) {
   } else {
     take_off_air(t, sender, t.receiver, t.fates[0]);
   }
-  if (t.frames_sent < t.frames && station(sender).up) return ask(sender, t.repetition);
+  if (t.frames_sent < t.frames && !t.cut) return ask(sender, t.repetition);
   channel_.launch(t);
   schedule(slot);
   if (!t.acknowledged) let_go(sender);
 }
 
 // A frame for one is heard by all in range of `from`.
-void Radio::put_on_air(Transmission& t, AgentId from, AgentId to, Fate& fate) {
+void Radio::put_on_air(Transmission& t, AgentId from, AgentId to, Fate& fate, Time end) {
+  const OnAir span{simulation_.now(), end};
   const std::span<const AgentId> hearers = channel_.neighbours(from);
   t.overhearers.assign(hearers.begin(), hearers.end());
   t.overheard.assign(hearers.size(), Fate::delivered);
-  receptions_->begin_sending(from);
+  receptions_->begin_sending(from, span);
   for (std::size_t i = 0; i < t.overhearers.size(); ++i) {
     const AgentId hearer = t.overhearers[i];
     receptions_->begin(hearer, hearer == to ? fate : t.overheard[i],
-                       channel_.power_dbm(from, hearer));
+                       channel_.power_dbm(from, hearer), span);
   }
 }
 
@@ -140,15 +156,19 @@ void Radio::let_go(AgentId sender) {
   if (!station(sender).waiting.empty()) wake(sender);
 }
 
-// What an agent was sending when it failed. A frame on the air still fills it to its end.
-void Radio::spoil_sending(AgentId sender) {
+// What an agent was sending when it failed. A frame on the air still fills it to its end; what has
+// left arrives.
+void Radio::cut_off(AgentId sender) {
   Station& from = station(sender);
+  const bool asked = std::exchange(from.asked, false);
   if (!from.sends(simulation_.now())) return;
   const std::uint32_t slot = from.on_air;
   Transmission& t = slots_[slot];
-  for (std::size_t i = t.settled; i < t.route.size; ++i) worsen(t.fates[i], Fate::sender_down);
-  if (!from.asked) return;
-  from.asked = false;
+  t.cut = true;
+  if (t.frames_sent < t.frames || t.end > simulation_.now()) {
+    for (std::size_t i = t.settled; i < t.route.size; ++i) worsen(t.fates[i], Fate::sender_down);
+  }
+  if (!asked) return;
   if (t.acknowledged) return conclude(slot, false);
   settle_rest(slot, Fate::sender_down);
   let_go(sender);

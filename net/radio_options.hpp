@@ -31,12 +31,14 @@ struct QueueOptions {
   std::optional<Duration> wait_max;
 };
 
-/// Latency beside the constant one, drawn for each packet and link.
+/// Latency beside the constant one, drawn for each packet and link. Acknowledgements have none.
 struct JitterOptions {
   enum class Law : std::uint8_t { none, uniform, exponential };
   Law law = Law::none;
-  Duration spread;         ///< uniform: the most; exponential: the mean; ≥ 0
-  bool reordering = true;  ///< false: a packet waits for those before it on its link
+  Duration spread;  ///< uniform: the most; exponential: the mean; ≥ 0
+  /// False: a packet waits for those that left before it on its link, lost or not, and arrives at
+  /// least 1 ns after them.
+  bool reordering = true;
 };
 
 /// Repetition of addressed packets until they are acknowledged (Outgoing::acknowledged).

@@ -8,12 +8,13 @@ namespace hearsay {
 Receptions::Receptions(int radios, const Options& options, AirListener* listener)
     : options_(options), listener_(listener), radios_(static_cast<std::size_t>(radios)) {}
 
-void Receptions::begin(AgentId hearer, Fate& fate, double power_dbm) {
+void Receptions::begin(AgentId hearer, Fate& fate, double power_dbm, const OnAir& span) {
   Ears& ears = radios_[index(hearer)];
   const bool was_taken = taken(ears);
-  if (ears.sending && options_.half_duplex) worsen(fate, Fate::half_duplex);
+  if (ears.sends_until > span.begin && options_.half_duplex) worsen(fate, Fate::half_duplex);
   if (options_.collisions) {
     for (const Frame& other : ears.frames) {
+      if (other.end <= span.begin) continue;
       ears.garbled = true;
       if (!(power_dbm >= other.power_dbm + options_.capture_db)) worsen(fate, Fate::collided);
       if (!(other.power_dbm >= power_dbm + options_.capture_db)) {
@@ -21,7 +22,7 @@ void Receptions::begin(AgentId hearer, Fate& fate, double power_dbm) {
       }
     }
   }
-  ears.frames.push_back({&fate, power_dbm});
+  ears.frames.push_back({&fate, power_dbm, span.end});
   if (!was_taken && listener_) listener_->air_taken(hearer);
 }
 
@@ -35,19 +36,35 @@ void Receptions::end(AgentId hearer, const Fate& fate) {
   maybe_free(hearer);
 }
 
-void Receptions::begin_sending(AgentId radio) {
+void Receptions::begin_sending(AgentId radio, const OnAir& span) {
   Ears& ears = radios_[index(radio)];
   const bool was_taken = taken(ears);
-  ears.sending = true;
+  ++ears.sending;
+  ears.sends_until = std::max(ears.sends_until, span.end);
   if (options_.half_duplex) {
-    for (const Frame& frame : ears.frames) worsen(*frame.fate, Fate::half_duplex);
+    for (const Frame& frame : ears.frames) {
+      if (frame.end > span.begin) worsen(*frame.fate, Fate::half_duplex);
+    }
   }
   if (!was_taken && listener_) listener_->air_taken(radio);
 }
 
 void Receptions::end_sending(AgentId radio) {
-  radios_[index(radio)].sending = false;
+  Ears& ears = radios_[index(radio)];
+  require(ears.sending > 0, "radio: the end of a frame that nobody sent");
+  --ears.sending;
   maybe_free(radio);
+}
+
+void Receptions::clear() {
+  for (std::size_t radio = 0; radio < radios_.size(); ++radio) {
+    Ears& ears = radios_[radio];
+    const bool was_taken = taken(ears);
+    ears.frames.clear();
+    ears.sending = 0;
+    ears.sends_until = Time();
+    if (was_taken) maybe_free(static_cast<AgentId>(radio));
+  }
 }
 
 void Receptions::maybe_free(AgentId radio) {

@@ -3,7 +3,8 @@
 // A frame is on the air at all who can hear it from its first bit to its last. Two at one radio
 // collide, unless the stronger is stronger by the capture ratio and so survives. A radio that sends
 // hears nothing if it is half-duplex. Overlaps are judged by the times at the senders: the way is
-// short against a frame.
+// short against a frame. A frame that begins at the instant at which another ends does not meet it,
+// whichever of the two is told first.
 #pragma once
 
 #include <array>
@@ -14,6 +15,7 @@
 
 #include "net/packet.hpp"
 #include "sim/kernel/ids.hpp"
+#include "sim/kernel/time.hpp"
 
 namespace hearsay {
 
@@ -43,6 +45,12 @@ class AirListener {
   virtual void air_free(AgentId radio, bool garbled) = 0;
 };
 
+/// From the first bit of a frame to its last.
+struct OnAir {
+  Time begin;
+  Time end;  ///< not before begin
+};
+
 class Receptions {
  public:
   struct Options {
@@ -57,26 +65,31 @@ class Receptions {
 
   /// A frame begins at `hearer`. Until end() `fate` stays where it is and is made graver by what
   /// happens to the frame there. `power_dbm` matters for capture alone.
-  void begin(AgentId hearer, Fate& fate, double power_dbm);
+  void begin(AgentId hearer, Fate& fate, double power_dbm, const OnAir& span);
   void end(AgentId hearer, const Fate& fate);
-  void begin_sending(AgentId radio);
+  void begin_sending(AgentId radio, const OnAir& span);
   void end_sending(AgentId radio);
-  bool sending(AgentId radio) const { return radios_[index(radio)].sending; }
-  /// True if it sends, or hears anything.
+  /// Takes everything off the air.
+  void clear();
+  /// When it has sent the last bit of what it has begun to send so far.
+  Time sends_until(AgentId radio) const { return radios_[index(radio)].sends_until; }
+  /// True if it sends, or hears anything. At the end of a frame it is true until end().
   bool taken(AgentId radio) const { return taken(radios_[index(radio)]); }
 
  private:
   struct Frame {
     Fate* fate;
     double power_dbm;
+    Time end;
   };
   struct Ears {
     std::vector<Frame> frames;  // on the air here; their order does not matter
-    bool sending = false;
+    Time sends_until;
+    int sending = 0;  // frames; 2 between the begin of one and the end of another at one instant
     bool garbled = false;
   };
   static std::size_t index(AgentId radio) { return static_cast<std::size_t>(radio); }
-  static bool taken(const Ears& ears) { return ears.sending || !ears.frames.empty(); }
+  static bool taken(const Ears& ears) { return ears.sending > 0 || !ears.frames.empty(); }
   void maybe_free(AgentId radio);
 
   Options options_;

@@ -38,6 +38,20 @@ class SendQueue {
     bytes_ += bytes - entry.bytes;
     entry = {packet, bytes};
   }
+  /// Takes out each for which `goes(packet)`; the others keep their order.
+  template <class Goes>
+  void take_out(Goes goes) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < size_; ++i) {
+      const Entry entry = ring_[place(i)];
+      if (goes(entry.packet)) {
+        bytes_ -= entry.bytes;
+      } else {
+        ring_[place(kept++)] = entry;
+      }
+    }
+    size_ = static_cast<std::uint32_t>(kept);
+  }
 
  private:
   struct Entry {

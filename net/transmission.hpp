@@ -57,6 +57,7 @@ struct Transmission {
   Time sent, start, end;  // handed over; first bit of this attempt; last bit of what began
   Time arrives;           // at hearers without a delay of their own
   Route route;
+  Duration way;  // to an addressee and back, without jitter
   std::uint64_t serial = 0;
   std::uint64_t index = 0;  // its number for draws: the tick if it has one
   std::uint64_t subject = 0;
@@ -66,12 +67,14 @@ struct Transmission {
   std::uint32_t frames = 1;
   std::uint32_t frames_sent = 0;  // of this attempt
   int repetition = 0;
-  Fate answer = Fate::lost;  // of the acknowledgement
+  Fate answer = Fate::lost;       // of the acknowledgement
+  Time answer_start, answer_end;  // from its first bit to its last
   NameId kind = 0;
   bool has_tick = false;
   bool acknowledged = false;  // wants to be
   bool aimed = false;         // its route is known
   bool answering = false;     // an acknowledgement is on the air
+  bool cut = false;           // its sender has failed meanwhile: nothing more of it is sent
   bool under_way = false;
 
   bool done() const { return settled == route.size; }
@@ -105,6 +108,7 @@ class TransmissionPool {
     t.repetition = 0;
     t.aimed = false;
     t.answering = false;
+    t.cut = false;
     t.under_way = true;
     t.serial = taken_++;
     return slot;

@@ -1,6 +1,7 @@
 // A simulation with a radio on which everybody listens and writes down what they hear.
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
@@ -42,6 +43,20 @@ inline void PrintTo(const Heard& h, std::ostream* out) {
   *out << h.at_ns << " ns: " << h.sender << "→" << h.receiver << " '" << h.text << "'";
 }
 
+// What a sender was told of a packet that was to be acknowledged.
+struct Outcome {
+  std::int64_t at_ns;
+  AgentId sender;
+  AgentId receiver;
+  std::string text;
+  bool acknowledged;
+  bool operator==(const Outcome&) const = default;
+};
+inline void PrintTo(const Outcome& o, std::ostream* out) {
+  *out << o.at_ns << " ns: " << o.sender << "→" << o.receiver << " '" << o.text << "' "
+       << (o.acknowledged ? "acknowledged" : "given up");
+}
+
 class Bed {
  public:
   struct Options {
@@ -71,6 +86,16 @@ class Bed {
                               .receiver = to,
                               .tick = tick,
                               .rider = std::move(rider)});
+  }
+
+  // To be acknowledged.
+  bool send_safely(AgentId from, std::string_view text, AgentId to,
+                   std::optional<std::uint64_t> tick = {}) {
+    return radio->send(from, {.kind = kind,
+                              .bytes = bytes_of(text),
+                              .receiver = to,
+                              .tick = tick,
+                              .acknowledged = true});
   }
 
   // Does `what` at an instant, in the phase in which agents talk.
@@ -108,7 +133,9 @@ class Bed {
   std::unique_ptr<Radio> radio;
   NameId kind;
   std::vector<Heard> heard;
-  std::function<void(const Packet&)> reaction;  // of everybody, after writing down
+  std::vector<Outcome> outcomes;
+  std::function<void(const Packet&)> reaction;    // of everybody, after writing down
+  std::function<void(const Packet&, bool)> told;  // of an outcome
 
  private:
   class Ear final : public Receiver {
@@ -119,12 +146,17 @@ class Bed {
                             text_of(packet.bytes)});
       if (bed_.reaction) bed_.reaction(packet);
     }
+    void on_outcome(const Packet& packet, bool acknowledged) override {
+      bed_.outcomes.push_back({bed_.simulation.now().nanoseconds(), packet.sender, packet.receiver,
+                               text_of(packet.bytes), acknowledged});
+      if (bed_.told) bed_.told(packet, acknowledged);
+    }
 
    private:
     Bed& bed_;
   };
   std::vector<std::unique_ptr<Ear>> ears_;
-  std::vector<std::function<void()>> todo_;
+  std::deque<std::function<void()>> todo_;  // they stay where they are while one adds another
 };
 
 }  // namespace hearsay

@@ -24,6 +24,11 @@ class Agent : public Receiver {
   virtual void start() = 0;
   /// Called for each packet that arrives. Most agents react by remembering.
   void on_packet(const Packet& packet) override { static_cast<void>(packet); }
+  /// The agent failed: its radio is off until on_up(). Its processes go on; they ask
+  /// context().up() before they look or talk.
+  virtual void on_down() {}
+  /// It is back; `forgets` if it lost its memory.
+  virtual void on_up(bool forgets) { static_cast<void>(forgets); }
   /// Called once after the last event, to leave final values in the record.
   virtual void finish() {}
 

@@ -48,8 +48,12 @@ class Context {
   /// The draws that belong to the `count`-th thing of that name.
   Stream stream_at(std::string_view purpose, std::uint64_t count) const;
 
-  /// Whom a broadcast reaches if nothing is lost, by number.
-  std::span<const AgentId> neighbours() const { return radio_.topology().neighbours(id()); }
+  /// False while the agent is down: it cannot look, talk or hear.
+  bool up() const { return radio_.up(id()); }
+  /// Whom a broadcast reaches now if nothing is lost, by number. Valid until anybody asks again.
+  std::span<const AgentId> neighbours() { return radio_.neighbours(id()); }
+  /// True if neighbours() may change over time.
+  bool neighbours_change() const { return radio_.neighbours_change(); }
   /// Hands a packet to the agent's radio. @return false if the transmitter's queue was full.
   bool send(const Outgoing& packet) { return radio_.send(id(), packet); }
   /// The same, to everybody who can hear.

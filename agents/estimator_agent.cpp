@@ -12,7 +12,8 @@ EstimatorAgent::EstimatorAgent(Context& context, Witness& witness, Options optio
                   .subjects = options_.subjects,
                   .dimension = options_.dimension,
                   .ledgers = witness.ledgers(),
-                  .workspace = &witness.workspace()},
+                  .workspace = &witness.workspace(),
+                  .strangers = context.neighbours_change()},
                  context.neighbours()),
       message_kind_(context.simulation().record().name("gaussian")) {
   witness_.watch(context.id(), estimator_);
@@ -29,11 +30,15 @@ void EstimatorAgent::on_packet(const Packet& packet) {
   if (packet.kind == message_kind_) estimator_.heard(packet.sender, packet.bytes, packet.rider);
 }
 
+void EstimatorAgent::on_up(bool forgets) {
+  if (forgets) estimator_.forget();
+}
+
 Process EstimatorAgent::look() {
   Time next = options_.sensor_start;
   for (std::uint64_t count = 0; next <= options_.sensor_end; ++count) {
     co_await context().sleep_until(next, Phase::measure);
-    for (std::size_t s = 0; s < options_.sensors.size(); ++s) {
+    for (std::size_t s = 0; s < options_.sensors.size() && context().up(); ++s) {
       Stream draws = context().simulation().stream_at(
           Purpose("sensor noise"), Entity::sensor(context().id(), static_cast<std::uint32_t>(s)),
           count);
@@ -50,6 +55,7 @@ Process EstimatorAgent::replay() {
     if (observation.time > context().now()) {
       co_await context().sleep_until(observation.time, Phase::measure);
     }
+    if (!context().up()) continue;
     estimator_.measured(observation.subject, observation.information,
                         witness_.measured(observation.subject, observation.information));
   }
@@ -64,23 +70,46 @@ Process EstimatorAgent::talk() {
 }
 
 void EstimatorAgent::say(std::uint64_t tick) {
-  if (gaussian::info(options_.rule).sends == gaussian::Sends::belief) {
+  if (!context().up()) return;
+  using gaussian::Sends;
+  const bool addressed = gaussian::info(options_.rule).sends == Sends::belief_less_heard;
+  if (!addressed && !options_.acknowledged) {
     say_to(no_agent, tick);
     return;
   }
-  for (const AgentId neighbour : context().neighbours()) say_to(neighbour, tick);
+  const std::span<const AgentId> now = context().neighbours();
+  listeners_.assign(now.begin(), now.end());
+  if (addressed) {
+    for (const AgentId neighbour : listeners_) say_to(neighbour, tick);
+  } else if (!listeners_.empty()) {
+    say_to_each(tick);
+  }
+}
+
+// One speech, a packet to each listener.
+void EstimatorAgent::say_to_each(std::uint64_t tick) {
+  const StaticGaussianEstimator::Speech speech = estimator_.speech(no_agent);
+  if (speech.bytes.empty()) return;
+  bool any = false;
+  for (const AgentId neighbour : listeners_) any |= hand_over(neighbour, tick, speech);
+  if (any) estimator_.sent(no_agent);
 }
 
 void EstimatorAgent::say_to(AgentId receiver, std::uint64_t tick) {
-  StaticGaussianEstimator::Speech speech = estimator_.speech(receiver);
-  if (speech.bytes.empty()) return;
+  const StaticGaussianEstimator::Speech speech = estimator_.speech(receiver);
+  if (!speech.bytes.empty() && hand_over(receiver, tick, speech)) estimator_.sent(receiver);
+}
+
+bool EstimatorAgent::hand_over(AgentId receiver, std::uint64_t tick,
+                               const StaticGaussianEstimator::Speech& speech) {
   Outgoing packet;
   packet.kind = message_kind_;
   packet.bytes = speech.bytes;
   packet.receiver = receiver;
   packet.tick = tick;
-  packet.rider = std::move(speech.rider);
-  if (context().send(packet)) estimator_.sent(receiver);
+  packet.rider = speech.rider;
+  packet.acknowledged = options_.acknowledged;
+  return context().send(packet);
 }
 
 }  // namespace hearsay

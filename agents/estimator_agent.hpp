@@ -35,11 +35,13 @@ class EstimatorAgent final : public Agent {
     /// Measurements to replay, by time; they outlive the agent.
     std::span<const Observation> observations;
     std::optional<PeriodicTalk> talk;  ///< nothing: never talks
+    bool acknowledged = false;         ///< a packet a neighbour, repeated until acknowledged
   };
   EstimatorAgent(Context& context, Witness& witness, Options options);
 
   void start() override;
   void on_packet(const Packet& packet) override;
+  void on_up(bool forgets) override;
 
   const StaticGaussianEstimator& estimator() const { return estimator_; }
 
@@ -49,11 +51,15 @@ class EstimatorAgent final : public Agent {
   Process talk();
   void say(std::uint64_t tick);
   void say_to(AgentId receiver, std::uint64_t tick);
+  void say_to_each(std::uint64_t tick);
+  bool hand_over(AgentId receiver, std::uint64_t tick,
+                 const StaticGaussianEstimator::Speech& speech);
 
   Witness& witness_;
   Options options_;
   StaticGaussianEstimator estimator_;
   NameId message_kind_;
+  std::vector<AgentId> listeners_;  // of the talk that is being held
 };
 
 }  // namespace hearsay

@@ -1,21 +1,16 @@
 #include "net/packet.hpp"
 
+#include <iterator>
+
 namespace hearsay {
 
 const char* to_string(Fate fate) {
-  switch (fate) {
-    case Fate::delivered:
-      return "delivered";
-    case Fate::lost:
-      return "lost";
-    case Fate::out_of_range:
-      return "out_of_range";
-    case Fate::queue_full:
-      return "queue_full";
-    case Fate::in_flight_at_end:
-      return "in_flight_at_end";
-  }
-  return "unknown fate";
+  constexpr const char* names[] = {"delivered",   "lost",     "out_of_range", "queue_full",
+                                   "replaced",    "collided", "half_duplex",  "receiver_down",
+                                   "sender_down", "jammed",   "expired",      "in_flight_at_end"};
+  static_assert(std::size(names) == fate_count);
+  const auto f = static_cast<std::size_t>(fate);
+  return f < fate_count ? names[f] : "unknown fate";
 }
 
 }  // namespace hearsay

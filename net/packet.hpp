@@ -52,16 +52,24 @@ class RiderPtr {
   Rider* rider_ = nullptr;
 };
 
-/// What became of a packet at one potential receiver. Exactly one fate each.
+/// What became of a packet at one potential receiver. Exactly one fate each. Where several apply it
+/// is the first of: sender_down, receiver_down, out_of_range, half_duplex, jammed, collided, lost.
 enum class Fate : std::uint8_t {
   delivered,
-  lost,              ///< the channel lost it
-  out_of_range,      ///< addressed to somebody the radio does not reach
-  queue_full,        ///< dropped by the sender's transmitter
+  lost,              ///< the channel lost it, or one of its frames
+  out_of_range,      ///< addressed to somebody the radio does not reach, or the link was down
+  queue_full,        ///< the sender's queue had no room for it
+  replaced,          ///< a newer packet took its place in the sender's queue
+  collided,          ///< another frame was on the air at the receiver
+  half_duplex,       ///< the receiver was sending meanwhile
+  receiver_down,     ///< the receiver was down, or failed meanwhile
+  sender_down,       ///< the sender was down, or failed before the last bit
+  jammed,            ///< a jammer was stronger
+  expired,           ///< waited in the sender's queue longer than it may
   in_flight_at_end,  ///< queued or on the air when the run ended
 };
-inline constexpr int fate_count = 5;
-/// "delivered", "lost", "out_of_range", "queue_full", "in_flight_at_end".
+inline constexpr int fate_count = 12;
+/// The name of the enumerator.
 const char* to_string(Fate fate);
 
 /// What an agent hands to its radio. The bytes and the rider are copied.
@@ -73,6 +81,12 @@ struct Outgoing {
   /// on a link, however many are sent. Without it the n-th packet on the link has draw n.
   std::optional<std::uint64_t> tick = {};
   RiderPtr rider = {};
+  /// What the packet is about, for a queue that replaces: a packet of the same kind, receiver and
+  /// subject is news of the same thing.
+  std::uint64_t subject = 0;
+  /// An addressed packet: the receiver's radio acknowledges it, the sender's repeats it otherwise,
+  /// and the sender is told (Receiver::on_outcome).
+  bool acknowledged = false;
 };
 
 /// What an agent gets. Valid during the call.

@@ -1,47 +1,42 @@
-// The radio network: every agent's transmitter and the medium between them.
+// The radio network: every agent's transmitter and the channel between them.
 //
-// A transmitter is a FIFO: packets leave one after another at `rate_bps`, at most
-// `queue_packets_max` wait or are being sent; a packet beyond is dropped (queue_full). What has
-// left arrives `latency` later at every hearer, and later still by the way there at
-// `propagation_m_per_s`, unless the channel loses it. Losses are keyed draws (seed, link, tick), so
-// the same packets are lost under every fusion rule.
+// A transmitter sends packets one after another at `rate_bps`, cut into frames of at most
+// `mtu_bytes`; the rest waits in a bounded queue. Where the channel is shared, each frame first
+// needs the air (net/access) and may be spoilt there (net/receptions). What has left arrives
+// `latency` later at every hearer, and later still by the way there, unless the channel
+// (net/channel) or a fault spoils it.
 //
 // A broadcast goes from hearer to hearer, by delay and then by number. Those of one delay are one
 // event; it schedules the next delay's when its hearers have heard. Ties with other events are
 // settled by that: what was in the queue by then comes first.
 //
-// Every packet ends in exactly one fate per potential receiver: the neighbours for a broadcast, the
-// addressee for an addressed packet. Each fate is a row of the simulation's record (its bytes are
+// Every packet ends in exactly one fate per potential receiver: whoever may hear a broadcast, the
+// addressee of an addressed packet. Each fate is a row of the simulation's record (its bytes are
 // the payload's) and is counted for the sender. finish() settles what is under way at the end and
 // checks that fates and packets balance.
 //
 // Nothing is allocated a packet once pools and queues have grown to what the traffic needs.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <memory>
+#include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
+#include "net/channel.hpp"
 #include "net/packet.hpp"
+#include "net/radio_options.hpp"
+#include "net/receptions.hpp"
+#include "net/send_queue.hpp"
 #include "net/topology.hpp"
+#include "net/traffic.hpp"
+#include "net/transmission.hpp"
 #include "sim/kernel/simulation.hpp"
 
 namespace hearsay {
-
-struct RadioOptions {
-  double rate_bps = 1e6;                 ///< bits a second, > 0, finite
-  std::uint32_t header_bytes = 0;        ///< added to each packet's bytes
-  std::uint32_t queue_packets_max = 64;  ///< waiting or being sent, ≥ 1
-  Duration latency = {};                 ///< ≥ 0, from the last bit sent to arrival
-  double loss_probability = 0.0;         ///< Bernoulli, a packet and link, in [0, 1]
-  /// > 0; the way to a hearer takes link length / speed more, to the nearest nanosecond. Infinite:
-  /// no time. A finite speed needs a topology with positions.
-  double propagation_m_per_s = std::numeric_limits<double>::infinity();
-};
 
 /// Gets packets; called in Phase::update, with failures charged to the hearer. It may send, also
 /// the very bytes that it got.
@@ -49,28 +44,24 @@ class Receiver {
  public:
   virtual ~Receiver() = default;
   virtual void on_packet(const Packet& packet) = 0;
+  /// What became of a packet of its own that was to be acknowledged: whether it was, before the
+  /// attempts ran out. (It may have arrived all the same.)
+  virtual void on_outcome(const Packet& packet, bool acknowledged) {
+    static_cast<void>(packet);
+    static_cast<void>(acknowledged);
+  }
 };
 
-/// Sums over a run, for one sender. Before Radio::finish(), bytes_sent and air_time include packets
-/// that still wait.
-struct SenderCounts {
-  std::uint64_t packets = 0;     ///< handed to the radio
-  std::uint64_t bytes_sent = 0;  ///< payload and header of packets whose sending began
-  std::uint64_t expected = 0;    ///< potential receivers of these packets, summed
-  std::array<std::uint64_t, fate_count> fates{};
-  Duration air_time = {};  ///< time the transmitter was busy
-};
-
-/// @throws BrokenInvariant, naming agent and numbers, unless the fates add up to what was expected.
-void require_balance(AgentId sender, const SenderCounts& counts);
-
-class Radio {
+class Radio final : private AccessUser {
  public:
   /// `simulation` must outlive the radio.
-  /// @throws InputError for an option outside its range.
-  Radio(Simulation& simulation, Topology topology, const RadioOptions& options);
+  /// @throws InputError for an option outside its range, or that does not fit the topology.
+  Radio(Simulation& simulation, Reach reach, const RadioOptions& options);
+  /// A graph that does not change.
+  Radio(Simulation& simulation, Topology topology, const RadioOptions& options)
+      : Radio(simulation, Reach{.topology = std::move(topology)}, options) {}
   /// Takes back what is under way: no receiver is called any more, riders are released.
-  ~Radio();
+  ~Radio() override;
   Radio(const Radio&) = delete;
   Radio& operator=(const Radio&) = delete;
 
@@ -78,17 +69,41 @@ class Radio {
   /// `receiver` must outlive the radio.
   void attach(AgentId agent, Receiver& receiver);
 
-  /// Hands a packet to `sender`'s transmitter. Sending takes the time of its bytes and the header
-  /// at `rate_bps`, to the nearest nanosecond. An addressee that does not hear the sender makes the
-  /// packet out_of_range once it is sent.
-  /// @return false if the queue was full.
-  /// @throws BrokenInvariant for a sender or addressee outside 0 … n−1, a tick of 2^48 or more, or
-  /// 4 GiB or more of bytes.
+  /// Hands a packet to `sender`'s transmitter. Sending takes the time of its bytes and a header a
+  /// frame at `rate_bps`, to the nearest nanosecond. An addressee that does not hear the sender
+  /// makes the packet out_of_range once it is sent.
+  /// @return false if the packet was dropped: the queue was full, or the agent is down.
+  /// @throws BrokenInvariant for a sender or addressee outside 0 … n−1, a tick of 2^48 or more,
+  /// 4 GiB or more of bytes, more than frames_max frames, or a broadcast to be acknowledged.
+  /// @throws InputError for a packet that an empty queue has no room for.
   bool send(AgentId sender, const Outgoing& packet);
 
-  const Topology& topology() const { return topology_; }
+  /// The agent fails, or is back. While it is down it hears nothing; its packets that wait or are
+  /// on the air are lost (sender_down), and so is what was on its way to it (receiver_down).
+  void set_up(AgentId agent, bool up);
+  bool up(AgentId agent) const { return stations_[index(agent, "agent")].up; }
+
+  /// Whom a broadcast of `agent` may reach now, by number. Valid until the next call.
+  std::span<const AgentId> neighbours(AgentId agent) { return channel_.neighbours(agent); }
+  /// True if they may change over time.
+  bool neighbours_change() const { return channel_.neighbours_change(); }
+  /// Where `agent` is now. @throws BrokenInvariant if nobody knows.
+  Point position(AgentId agent) const { return channel_.position(agent); }
+  const Topology& topology() const { return channel_.topology(); }
   /// Sums of `sender`, 0 … n−1. @throws BrokenInvariant for another.
-  const SenderCounts& counts(AgentId sender) const;
+  const SenderCounts& counts(AgentId sender) const {
+    index(sender, "sender");
+    return traffic_.sender(sender);
+  }
+  /// Calls visit(sender, receiver, fates) for each link, by sender and receiver; for none unless
+  /// links are counted.
+  template <class Visit>
+  void visit_links(Visit visit) const {
+    if (traffic_.links().empty()) return;
+    channel_.visit_links([&](AgentId from, AgentId to, std::uint32_t link) {
+      if (link < traffic_.links().size()) visit(from, to, traffic_.links()[link]);
+    });
+  }
 
   /// Settles packets under way as in_flight_at_end, in the order in which they were sent. To be
   /// called after the run, not by a receiver.
@@ -96,42 +111,65 @@ class Radio {
   void finish();
 
  private:
-  struct Ear;
-  struct Sender;
-  struct Route;
-  struct Transmission;
+  /// What belongs to a transmitter, together in memory.
+  struct alignas(64) Station {
+    SendQueue waiting;
+    Time free_at;              // when the last bit of what is on the air will have left
+    EventId next;              // takes the next from the queue
+    std::uint32_t on_air = 0;  // the last packet of which sending began, if held or before free_at
+    bool held = false;         // by on_air: more frames of it, or an acknowledgement, are to come
+    bool asked = false;        // for the air
+    bool up = true;
+    bool sends(Time now) const { return held || free_at > now; }
+  };
+  Station& station(AgentId agent) { return stations_[static_cast<std::size_t>(agent)]; }
   std::size_t index(AgentId agent, const char* role) const;
-  void order_arrivals();
-  std::uint32_t take_slot();
-  void reserve(std::vector<std::byte>* buffer, std::size_t bytes);
-  void release_slot(std::uint32_t slot);
+  std::uint64_t air_bytes(std::uint64_t bytes) const;
+  std::uint32_t frames_of(std::uint64_t bytes) const;
   Duration air_time(std::uint64_t bytes);
-  Duration delay(std::size_t link) const;
-  Route route(AgentId sender, const AgentId& receiver) const;
-  void draw_losses(const Outgoing& packet, const Route& route, std::uint8_t* lost);
-  void drop(AgentId sender, const Outgoing& packet);
+
+  // Hand-over and arrival (radio.cpp).
+  void require_sound(AgentId sender, const Outgoing& packet) const;
+  std::uint32_t take(AgentId sender, const Outgoing& packet);
+  void aim(Transmission& t, bool draws);
+  bool admit(AgentId sender, std::uint32_t slot);
+  bool replace_waiting(AgentId sender, std::uint32_t slot);
+  void settle_rest(std::uint32_t slot, Fate fate);
   void schedule(std::uint32_t slot);
   void arrive(std::uint32_t slot);
-  void settle(MessageRow* row, AgentId receiver, Fate fate);
+  Fate fate_now(const Transmission& t, std::size_t i) const;
+  void deliver(const Packet& packet);
+  // Sending (radio_air.cpp).
+  void wake(AgentId sender);
+  void ask(AgentId sender, int repetition);
+  void granted(AgentId sender) override;
+  void take_next(AgentId sender);
+  void drop_expired(AgentId sender);
+  void begin(std::uint32_t slot);
+  void begin_frames(std::uint32_t slot);
+  void end_frames(std::uint32_t slot);
+  void put_on_air(Transmission& t, AgentId from, AgentId to, Fate& fate);
+  void take_off_air(Transmission& t, AgentId from, AgentId to, const Fate& fate);
+  void let_go(AgentId sender);
+  void spoil_sending(AgentId sender);
+  // Acknowledgement (radio_acknowledgement.cpp).
+  void arrive_acknowledged(std::uint32_t slot);
+  void answer(std::uint32_t slot);
+  void end_answer(std::uint32_t slot);
+  void conclude(std::uint32_t slot, bool acknowledged);
 
   Simulation& simulation_;
-  Topology topology_;
   RadioOptions options_;
+  Channel channel_;
+  Traffic traffic_;
   std::vector<Receiver*> receivers_;
-  std::vector<Sender> senders_;
-  // The neighbours of each sender in the order in which a broadcast arrives, rows as in the
-  // topology. Empty if the way takes no time: then they hear at once.
-  std::vector<Ear> ears_;
-  // Pooled. Each stays where it is: a receiver may send, and so grow the pool, during a delivery.
-  std::vector<std::unique_ptr<Transmission>> slots_;
-  std::vector<std::uint32_t> free_slots_;
-  std::vector<std::uint64_t> link_packets_;  // packets without tick so far, a link
-  std::uint64_t transmissions_ = 0;
-  std::size_t hearers_max_ = 1;       // of a broadcast of anybody; an addressed packet has one
-  std::size_t packet_bytes_max_ = 0;  // so far
-  std::uint64_t air_bytes_ = 0;       // what air_time_ is the time of
+  std::vector<Station> stations_;
+  TransmissionPool slots_;
+  std::unique_ptr<Access> access_;          // null: everybody sends at will
+  std::unique_ptr<Receptions> receptions_;  // null: frames do not meet
+  std::vector<Time> up_since_;              // if it is up; empty as long as nobody was down
+  std::uint64_t air_bytes_ = 0;             // what air_time_ is the time of
   Duration air_time_;
-  std::array<NameId, fate_count> fate_names_{};
 };
 
 }  // namespace hearsay

@@ -1,57 +1,63 @@
-// What a transmitter has to send, as far as a FIFO needs to know: when each packet's sending ends.
+// Packets that wait at a transmitter, first in, first out: their numbers and sizes.
 #pragma once
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
-
-#include "sim/kernel/time.hpp"
 
 namespace hearsay {
 
-/// Costs no event of its own: what has been sent is forgotten when somebody looks. Grows to what
-/// the traffic needs and keeps its room.
+/// A ring that grows to what the traffic needs and keeps its room.
 class SendQueue {
  public:
-  /// Number of packets that wait or are being sent at `now`, which never goes back.
-  std::size_t occupancy(Time now) {
-    if (free_at_ <= now) {
-      size_ = 0;
-      return 0;
-    }
-    while (size_ > 0 && ends_[head_] <= now) {
-      head_ = head_ + 1 == ends_.size() ? 0 : head_ + 1;
-      --size_;
-    }
-    return size_ + 1;
+  bool empty() const { return size_ == 0; }
+  std::size_t size() const { return size_; }
+  /// Sum of the sizes of all that wait.
+  std::uint64_t bytes() const { return bytes_; }
+
+  /// The i-th that waits, 0 … size()−1.
+  std::uint32_t operator[](std::size_t i) const { return ring_[place(i)].packet; }
+
+  void push(std::uint32_t packet, std::uint64_t bytes) {
+    if (size_ == ring_.size()) grow();
+    ring_[place(size_++)] = {packet, bytes};
+    bytes_ += bytes;
   }
-
-  /// When the sender has sent all it was given; the start of the run if that is nothing.
-  Time free_at() const { return free_at_; }
-
-  /// One packet more at `now`, whose sending ends at `end` ≥ free_at().
-  void push(Time now, Time end) {
-    if (occupancy(now) > 0) put_back(free_at_);
-    free_at_ = end;
+  /// Takes the first. The queue is not empty.
+  std::uint32_t pop() {
+    const Entry first = ring_[head_];
+    head_ = head_ + 1 == ring_.size() ? 0 : head_ + 1;
+    --size_;
+    bytes_ -= first.bytes;
+    return first.packet;
+  }
+  /// Puts another in the i-th place.
+  void replace(std::size_t i, std::uint32_t packet, std::uint64_t bytes) {
+    Entry& entry = ring_[place(i)];
+    bytes_ += bytes - entry.bytes;
+    entry = {packet, bytes};
   }
 
  private:
-  void put_back(Time end) {
-    if (size_ == ends_.size()) grow();
-    const std::size_t tail = head_ + size_;
-    ends_[tail < ends_.size() ? tail : tail - ends_.size()] = end;
-    ++size_;
+  struct Entry {
+    std::uint32_t packet;
+    std::uint64_t bytes;
+  };
+  std::size_t place(std::size_t i) const {
+    const std::size_t p = head_ + i;
+    return p < ring_.size() ? p : p - ring_.size();
   }
   void grow() {
-    std::rotate(ends_.begin(), ends_.begin() + static_cast<std::ptrdiff_t>(head_), ends_.end());
+    std::rotate(ring_.begin(), ring_.begin() + static_cast<std::ptrdiff_t>(head_), ring_.end());
     head_ = 0;
-    ends_.resize(std::max<std::size_t>(4, 2 * ends_.size()));
+    ring_.resize(std::max<std::size_t>(4, 2 * ring_.size()));
   }
 
-  Time free_at_;            // end of the last packet's sending
-  std::vector<Time> ends_;  // of those before it, ascending: a ring from head_
-  std::size_t head_ = 0;
-  std::size_t size_ = 0;
+  std::vector<Entry> ring_;
+  std::uint64_t bytes_ = 0;
+  std::uint32_t head_ = 0;
+  std::uint32_t size_ = 0;
 };
 
 }  // namespace hearsay

@@ -139,6 +139,25 @@ Topology Topology::full(int agents) {
   return Topology(std::move(lists));
 }
 
+Topology Topology::binary_tree(int agents) {
+  Lists lists = empty_lists(agents);
+  for (AgentId a = 1; a < agents; ++a) join(lists, (a - 1) / 2, a);
+  return Topology(std::move(lists));
+}
+
+Topology Topology::grid(int agents, int columns) {
+  Lists lists = empty_lists(agents);
+  if (columns < 1 || columns > agents) {
+    throw InputError("a grid of " + std::to_string(agents) + " agents has 1 … " +
+                     std::to_string(agents) + " columns, not " + std::to_string(columns));
+  }
+  for (AgentId a = 1; a < agents; ++a) {
+    if (a % columns != 0) join(lists, a - 1, a);
+    if (a >= columns) join(lists, a - columns, a);
+  }
+  return Topology(std::move(lists));
+}
+
 Topology Topology::edges(int agents, std::span<const std::pair<AgentId, AgentId>> edges) {
   Lists lists = empty_lists(agents);
   for (std::size_t i = 0; i < edges.size(); ++i) {
@@ -194,8 +213,11 @@ std::int64_t Topology::link(AgentId from, AgentId to) const {
 
 bool Topology::is_tree() const {
   const auto n = static_cast<std::size_t>(agents());
-  if (links() != 2 * (n - 1)) return false;
-  // With n − 1 edges it is a tree exactly if everybody is reached from agent 0.
+  return links() == 2 * (n - 1) && is_connected();
+}
+
+bool Topology::is_connected() const {
+  const auto n = static_cast<std::size_t>(agents());
   std::vector<bool> seen(n, false);
   std::vector<AgentId> reached{0};
   seen[0] = true;

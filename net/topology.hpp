@@ -1,8 +1,9 @@
 // Who can hear whom: a static graph over n radios. If a hears b, b hears a.
 //
-// Built by name (line, ring, star, full), from a list of edges, or from positions and a range.
-// Neighbours are held in one array (compressed rows), sorted by number, so a broadcast costs its
-// number of hearers.
+// Built by name (line, ring, star, binary tree, grid, full), from a list of edges, or from
+// positions and a range; graphs that are drawn at random are in random_graphs.hpp. Neighbours are
+// held in one array (compressed rows), sorted by number, so a broadcast costs its number of
+// hearers.
 #pragma once
 
 #include <array>
@@ -27,6 +28,11 @@ class Topology {
   /// Agent 0 in the middle.
   static Topology star(int agents);
   static Topology full(int agents);
+  /// Agent 0 is the root; the parent of agent i > 0 is (i − 1) / 2, rounded down.
+  static Topology binary_tree(int agents);
+  /// Rows of `columns` agents each, numbered row by row; the last row may be shorter. Neighbours
+  /// are those left, right, above and below. @throws InputError unless 1 ≤ columns ≤ agents.
+  static Topology grid(int agents, int columns);
   /// Undirected edges; duplicates count once. @throws InputError for an agent outside 0 … n−1 or an
   /// edge from an agent to itself (message names the edge).
   static Topology edges(int agents, std::span<const std::pair<AgentId, AgentId>> edges);
@@ -51,6 +57,8 @@ class Topology {
   bool has_lengths() const { return placed_; }
   /// Distance between the ends of a link, 0 … links()−1, in m; 0 without positions.
   double length_m(std::size_t link) const { return placed_ ? length_m_[link] : 0.0; }
+  /// True if every two agents are joined by a path.
+  bool is_connected() const;
   /// True if every two agents are joined by exactly one path.
   bool is_tree() const;
 

@@ -86,6 +86,8 @@ void describe(V& v, TalkSpec& s) {
   v.field("phase", s.phase, one_of({"random", "staggered", "together"}),
           "first sending: at random, agent i of n at i·period/n, or all at once");
   v.field("phase_s", s.phase_s, time_span(true), "first sending of this agent, below the period");
+  v.field("acknowledged", s.acknowledged, one_of({"on", "off"}),
+          "one packet a neighbour, each repeated until acknowledged, instead of a broadcast");
 }
 
 template <class V>
@@ -108,6 +110,7 @@ void describe(V& v, RecordSpec& s) {
   v.field("series", s.series, one_of_if_known(v.names().metrics), "metrics kept over time");
   v.field("series_period_s", s.series_period_s, time_span(false), "time between samples");
   v.field("messages", s.messages, one_of({"all", "counts"}), "each packet's fate, or sums only");
+  v.field("links", s.links, one_of({"on", "off"}), "how many packets met which fate on each link");
   v.field("ledger", s.ledger, one_of({"on", "off"}), "how often measurements were counted");
 }
 
@@ -120,6 +123,7 @@ void describe(V& v, Scenario& s) {
   v.table("world", s.world, "what is true");
   v.table("radio", s.radio, "how agents hear one another");
   v.table("agents", s.agents, "at least one [[agents]]");
+  v.table("dropouts", s.dropouts, "agents that die, sleep or reboot");
   v.table("record", s.record, "what the run leaves behind");
 }
 

@@ -185,6 +185,14 @@ std::string to_toml(std::string_view string) {
   return text + '"';
 }
 
+std::string shortened(std::string text) {
+  constexpr std::size_t longest = 80;
+  if (text.size() <= longest) return text;
+  std::size_t cut = longest;
+  while (cut > 0 && (static_cast<unsigned char>(text[cut]) & 0xC0) == 0x80) --cut;
+  return text.substr(0, cut) + "…";
+}
+
 std::string to_toml(const TomlNode& node) {
   using Type = TomlNode::Type;
   switch (node.type) {

@@ -51,4 +51,7 @@ std::string to_toml(const TomlNode& node);
 std::string to_toml(double number);
 std::string to_toml(std::string_view string);
 
+/// For messages: the text, or its first 80 bytes, cut between characters, and "…".
+std::string shortened(std::string text);
+
 }  // namespace hearsay

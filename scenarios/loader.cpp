@@ -132,15 +132,22 @@ class Writer {
   KnownNames names_;
 };
 
-// A directory named in the file is meant from there; one named with --set from where the user is.
-void resolve_directory(const TomlNode& root, const std::string& file, Scenario& scenario) {
-  if (!scenario.world.log) return;
-  const TomlNode* node = root.find("world")->find("log")->find("directory");
-  std::string& directory = scenario.world.log->directory;
-  const std::filesystem::path path(directory);
+// A path named in the file is meant from there; one named with --set from where the user is.
+void resolve_path(const TomlNode* node, const std::string& file, std::string& value) {
+  const std::filesystem::path path(value);
   const bool from_file = node && node->origin.line > 0;
-  if (!from_file || directory.empty() || path.is_absolute()) return;
-  directory = (std::filesystem::path(file).parent_path() / path).lexically_normal().string();
+  if (!from_file || value.empty() || path.is_absolute()) return;
+  value = (std::filesystem::path(file).parent_path() / path).lexically_normal().string();
+}
+
+void resolve_paths(const TomlNode& root, const std::string& file, Scenario& scenario) {
+  if (scenario.world.log) {
+    const TomlNode* node = root.find("world")->find("log")->find("directory");
+    resolve_path(node, file, scenario.world.log->directory);
+  }
+  if (!scenario.radio.contacts.empty()) {
+    resolve_path(root.find("radio")->find("contacts"), file, scenario.radio.contacts);
+  }
 }
 
 }  // namespace
@@ -156,8 +163,8 @@ Scenario build_scenario(TomlNode root, const std::string& file, std::span<const 
   scenario.file = file;
   const KeyPath top;
   Reader(root, top, names).read_all(scenario);
+  resolve_paths(root, file, scenario);
   finish(root, scenario);
-  resolve_directory(root, file, scenario);
   return scenario;
 }
 

@@ -1,35 +1,75 @@
 #include "scenarios/network.hpp"
 
 #include <limits>
-#include <utility>
+
+#include "scenarios/channel.hpp"
 
 namespace hearsay {
 
-Topology topology_of(const Scenario& scenario, const Places& places) {
-  const RadioSpec& radio = scenario.radio;
-  const int agents = scenario.agent_count();
-  if (radio.topology == "line") return Topology::line(agents);
-  if (radio.topology == "ring") return Topology::ring(agents);
-  if (radio.topology == "star") return Topology::star(agents);
-  if (radio.topology == "full") return Topology::full(agents);
-  if (radio.topology == "edges") {
-    std::vector<std::pair<AgentId, AgentId>> edges;
-    for (const auto& [a, b] : radio.edges) edges.emplace_back(a, b);
-    return Topology::edges(agents, edges);
-  }
-  std::vector<std::array<double, 3>> positions;
-  for (const auto& place : places) positions.push_back({place.value()[0], place.value()[1], 0.0});
-  return Topology::disk(positions, radio.range_m);
+namespace {
+
+AccessOptions access_options(const SharingSpec& spec, const AcknowledgementSpec& acknowledgement,
+                             double rate_bps) {
+  AccessOptions options;
+  if (spec.model == "none") return options;
+  options.sharing = spec.model == "slotted-aloha"   ? Sharing::slotted_aloha
+                    : spec.model == "carrier-sense" ? Sharing::carrier_sense
+                                                    : Sharing::tdma;
+  options.slot = Duration::seconds(spec.slot_s);
+  options.send_probability = spec.send_probability;
+  options.slots = spec.slots;
+  options.interframe = Duration::seconds(spec.interframe_s);
+  options.interframe_garbled =
+      Duration::seconds(acknowledgement.interframe_s + 8.0 * acknowledgement.bytes / rate_bps);
+  options.window_min = spec.window_min;
+  options.window_max = spec.window_max;
+  return options;
 }
 
-RadioOptions radio_options(const RadioSpec& spec) {
-  return {.rate_bps = spec.rate_bps,
-          .header_bytes = static_cast<std::uint32_t>(spec.header_bytes),
-          .queue_packets_max = static_cast<std::uint32_t>(spec.queue_packets_max),
-          .latency = Duration::seconds(spec.latency_s),
-          .loss_probability = spec.loss.model == "bernoulli" ? spec.loss.probability : 0.0,
-          .propagation_m_per_s =
-              spec.propagation_m_per_s.value_or(std::numeric_limits<double>::infinity())};
+QueueOptions queue_options(const RadioSpec& spec) {
+  QueueOptions options;
+  options.packets_max = static_cast<std::uint32_t>(spec.queue_packets_max);
+  if (spec.queue_bytes_max) options.bytes_max = static_cast<std::uint64_t>(*spec.queue_bytes_max);
+  if (spec.queue_policy == "drop-oldest") options.policy = QueuePolicy::drop_oldest;
+  if (spec.queue_policy == "replace") options.policy = QueuePolicy::replace;
+  if (spec.queue_wait_max_s) options.wait_max = Duration::seconds(*spec.queue_wait_max_s);
+  return options;
+}
+
+JitterOptions jitter_options(const JitterSpec& spec) {
+  using Law = JitterOptions::Law;
+  return {.law = spec.law == "uniform"       ? Law::uniform
+                 : spec.law == "exponential" ? Law::exponential
+                                             : Law::none,
+          .spread = Duration::seconds(spec.spread_s),
+          .reordering = spec.order == "reordering"};
+}
+
+}  // namespace
+
+RadioOptions radio_options(const Scenario& scenario) {
+  const RadioSpec& spec = scenario.radio;
+  const double infinity = std::numeric_limits<double>::infinity();
+  const bool shared = spec.sharing.model != "none";
+  RadioOptions options;
+  options.rate_bps = spec.rate_bps;
+  options.count_links = scenario.record.links == "on";
+  options.header_bytes = static_cast<std::uint32_t>(spec.header_bytes);
+  if (spec.mtu_bytes) options.mtu_bytes = static_cast<std::uint32_t>(*spec.mtu_bytes);
+  options.queue = queue_options(spec);
+  options.half_duplex = spec.half_duplex.value_or(shared ? "on" : "off") == "on";
+  options.access = access_options(spec.sharing, spec.acknowledgement, spec.rate_bps);
+  options.capture_db = spec.sharing.capture_db.value_or(infinity);
+  options.latency = Duration::seconds(spec.latency_s);
+  options.jitter = jitter_options(spec.jitter);
+  options.loss = loss_of(spec.loss);
+  options.propagation = propagation_of(spec);
+  for (const JammerSpec& jammer : spec.jammers) options.jammers.push_back(jammer_of(jammer));
+  options.propagation_m_per_s = spec.propagation_m_per_s.value_or(infinity);
+  options.acknowledgement = {.bytes = static_cast<std::uint32_t>(spec.acknowledgement.bytes),
+                             .interframe = Duration::seconds(spec.acknowledgement.interframe_s),
+                             .attempts_max = spec.acknowledgement.attempts_max};
+  return options;
 }
 
 }  // namespace hearsay

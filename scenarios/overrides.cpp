@@ -32,6 +32,15 @@ struct Setting {
   const std::string& origin;
 };
 
+// The first `depth` + 1 steps as a key of the schema.
+std::string path_to(const Setting& setting, std::size_t depth) {
+  std::string path;
+  for (std::size_t i = 0; i <= depth; ++i) {
+    path += (path.empty() ? "" : ".") + setting.steps[i].name;
+  }
+  return path;
+}
+
 void set(TomlNode& table, const Setting& setting, std::size_t depth);
 
 void set_element(TomlNode& element, const Setting& setting, std::size_t depth) {
@@ -64,8 +73,7 @@ void set(TomlNode& table, const Setting& setting, std::size_t depth) {
   const KeyStep& step = setting.steps[depth];
   const bool last = depth + 1 == setting.steps.size();
   TomlNode* child = table.find(step.name);
-  const bool of_array = (step.name == "agents" && depth == 0) ||
-                        (step.name == "targets" && depth == 1);  // as the schema has it
+  const bool of_array = is_table_array(path_to(setting, depth));
   if (of_array && (!last || step.index >= 0)) {
     if (child && child->type == TomlNode::Type::array) {
       set_elements(*child, setting, depth);

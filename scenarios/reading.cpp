@@ -79,14 +79,8 @@ std::string KeyPath::text() const {
 }
 
 void reject(const TomlNode& node, const KeyPath& path, const std::string& why) {
-  constexpr std::size_t longest = 80;
-  std::string value = to_toml(node);
-  if (value.size() > longest) {
-    std::size_t cut = longest;
-    while (cut > 0 && (static_cast<unsigned char>(value[cut]) & 0xC0) == 0x80) --cut;
-    value = value.substr(0, cut) + "…";
-  }
-  throw InputError(node.origin.text() + ": " + path.text() + " = " + value + ": " + why);
+  throw InputError(node.origin.text() + ": " + path.text() + " = " + shortened(to_toml(node)) +
+                   ": " + why);
 }
 
 void reject_key(const Origin& origin, const std::string& path, const std::string& why) {
@@ -104,7 +98,8 @@ std::string Allowed::text() const {
     return text;
   }
   if (!std::isfinite(low)) return "";
-  if (above_low) return "> " + limit_text(low);
+  const bool closed = std::isfinite(high) && finest == 0.0;
+  if (above_low) return "> " + limit_text(low) + (closed ? " … " + limit_text(high) : "");
   if (!std::isfinite(high) || finest > 0.0) return "≥ " + limit_text(low);
   return limit_text(low) + " … " + limit_text(high);
 }
@@ -113,6 +108,12 @@ Allowed anything() { return {}; }
 
 Allowed greater_than_zero() {
   Allowed allowed = at_least(0.0);
+  allowed.above_low = true;
+  return allowed;
+}
+
+Allowed above_zero_to(double high) {
+  Allowed allowed = between(0.0, high);
   allowed.above_low = true;
   return allowed;
 }
@@ -177,6 +178,29 @@ void read(const TomlNode& node, const KeyPath& path, const Allowed& allowed, std
   value = static_cast<std::uint64_t>(wide);
 }
 
+void read(const TomlNode& node, const KeyPath& path, const Allowed&, bool& value) {
+  if (node.type != TomlNode::Type::boolean) reject_type(node, path, "true or false");
+  value = node.boolean;
+}
+
+void read(const TomlNode& node, const KeyPath& path, const Allowed& allowed, AgentRef& value) {
+  value = {};
+  if (node.type == TomlNode::Type::string) return;
+  if (node.type != TomlNode::Type::integer) {
+    reject_type(node, path, "the number or name of an agent");
+  }
+  read(node, path, allowed, value.number);
+}
+
+void read(const TomlNode& node, const KeyPath& path, const Allowed& allowed,
+          std::vector<AgentRef>& value) {
+  expect_array(node, path, "an array of agents");
+  value.assign(node.children.size(), {});
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    read(node.children[i], path[i], allowed, value[i]);
+  }
+}
+
 void read(const TomlNode& node, const KeyPath& path, const Allowed& allowed, std::string& value) {
   if (node.type != TomlNode::Type::string) reject_type(node, path, "a string");
   const auto& choices = allowed.choices;
@@ -228,6 +252,23 @@ void read(const TomlNode& node, const KeyPath& path, const Allowed& allowed,
       const TomlNode& end = pair.children[k];
       if (end.type == TomlNode::Type::string) continue;
       read(end, pair_path[k], allowed, value[i][k]);
+    }
+  }
+}
+
+void read(const TomlNode& node, const KeyPath& path, const Allowed& allowed,
+          std::vector<std::vector<int>>& value) {
+  expect_array(node, path, "an array of groups of agents");
+  value.clear();
+  for (std::size_t i = 0; i < node.children.size(); ++i) {
+    const TomlNode& group = node.children[i];
+    const KeyPath group_path = path[i];
+    expect_array(group, group_path, "a group of agents, as [0, 1]");
+    value.emplace_back(group.children.size(), -1);
+    for (std::size_t k = 0; k < group.children.size(); ++k) {
+      const TomlNode& member = group.children[k];
+      if (member.type == TomlNode::Type::string) continue;
+      read(member, group_path[k], allowed, value[i][k]);
     }
   }
 }

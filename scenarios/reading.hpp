@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "scenarios/channel_spec.hpp"
 #include "scenarios/document.hpp"
 
 namespace hearsay {
@@ -44,11 +45,12 @@ struct Allowed {
   std::vector<std::string> choices;
   const char* note = "";  ///< why, appended to a message about the range
 
-  /// "> 0", "≥ 0", "0 … 1", "a | b"; empty if anything is allowed.
+  /// "> 0", "≥ 0", "0 … 1", "> 0 … 1", "a | b"; empty if anything is allowed.
   std::string text() const;
 };
 Allowed anything();
 Allowed greater_than_zero();
+Allowed above_zero_to(double high);
 Allowed at_least(double low);
 Allowed between(double low, double high);
 /// A span of time in seconds: at most 1e9 s, and at least a nanosecond if not zero.
@@ -60,7 +62,12 @@ Allowed one_of_if_known(const std::vector<std::string>& known);
 void read(const TomlNode& node, const KeyPath& path, const Allowed& allowed, double& value);
 void read(const TomlNode& node, const KeyPath& path, const Allowed& allowed, int& value);
 void read(const TomlNode& node, const KeyPath& path, const Allowed& allowed, std::uint64_t& value);
+void read(const TomlNode& node, const KeyPath& path, const Allowed& allowed, bool& value);
 void read(const TomlNode& node, const KeyPath& path, const Allowed& allowed, std::string& value);
+/// A number or a name; a name becomes −1, to be found later.
+void read(const TomlNode& node, const KeyPath& path, const Allowed& allowed, AgentRef& value);
+void read(const TomlNode& node, const KeyPath& path, const Allowed& allowed,
+          std::vector<AgentRef>& value);
 /// Two coordinates.
 void read(const TomlNode& node, const KeyPath& path, const Allowed& allowed,
           std::vector<double>& value);
@@ -70,6 +77,9 @@ void read(const TomlNode& node, const KeyPath& path, const Allowed& allowed,
 /// Pairs of agents, each a number or a name; a name becomes −1, to be found later.
 void read(const TomlNode& node, const KeyPath& path, const Allowed& allowed,
           std::vector<std::array<int, 2>>& value);
+/// Groups of agents, each a number or a name; a name becomes −1, to be found later.
+void read(const TomlNode& node, const KeyPath& path, const Allowed& allowed,
+          std::vector<std::vector<int>>& value);
 void read(const TomlNode& node, const KeyPath& path, const Allowed& allowed,
           std::map<std::string, double>& value);
 template <class T>

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "scenarios/channel.hpp"
 #include "scenarios/network.hpp"
 #include "sim/kernel/error.hpp"
 
@@ -82,6 +83,14 @@ void require_subjects(const PreparedScenario& prepared) {
   }
 }
 
+Reach reach_of(const PreparedScenario& prepared, std::uint64_t seed) {
+  LinkPlan plan =
+      prepared.links ? *prepared.links : make_link_plan(prepared.scenario, prepared.places, seed);
+  return {.topology = std::move(plan.topology),
+          .changes = std::move(plan.changes),
+          .positions_m = positions_of(prepared.places)};
+}
+
 TalkPhase talk_phase_of(const std::string& name) {
   if (name == "staggered") return TalkPhase::staggered;
   return name == "together" ? TalkPhase::together : TalkPhase::random;
@@ -115,18 +124,19 @@ std::shared_ptr<const PreparedScenario> prepare(Scenario scenario, const Catalog
   prepared->scenario = std::move(scenario);
   const Scenario& s = prepared->scenario;
   prepared->names = agent_names(s);
-  const auto places = agent_positions(s);
+  prepared->places = agent_positions(s);
   for (const AgentSpec& spec : s.agents) {
     for (int i = 0; i < spec.count; ++i) prepared->specs.push_back(&spec);
   }
-  prepared->topology = topology_of(s, places);
+  if (!is_drawn(s.radio)) prepared->links = make_link_plan(s, prepared->places, s.seed);
   prepared->series = metrics_of(s.record);
   prepared->observations.resize(prepared->specs.size());
   for (const TargetSpec& target : s.world.targets) {
     prepared->subjects.push_back({target.name, target.position_m});
   }
   for (std::size_t i = 0; i < prepared->specs.size(); ++i) {
-    prepared->sensors.push_back(position_sensors(*prepared->specs[i], s.world, places[i]));
+    prepared->sensors.push_back(
+        position_sensors(*prepared->specs[i], s.world, prepared->places[i]));
   }
   if (s.world.log) prepare_log(*prepared, logs);
   require_subjects(*prepared);
@@ -143,8 +153,8 @@ Run::Run(std::shared_ptr<const PreparedScenario> prepared, const Catalog& catalo
                    .record = {.keep_messages = prepared_->scenario.record.messages == "all",
                               .digest = options.digest,
                               .ledger_digest = options.ledger_digest}}),
-      radio_(std::make_unique<Radio>(simulation_, prepared_->topology,
-                                     radio_options(prepared_->scenario.radio))) {
+      radio_(std::make_unique<Radio>(simulation_, reach_of(*prepared_, options.seed),
+                                     radio_options(prepared_->scenario))) {
   simulation_.name_of_agent = [this](AgentId id) {
     return id >= 0 ? prepared_->names[static_cast<std::size_t>(id)] : std::string("central");
   };
@@ -183,6 +193,10 @@ void Run::build_agents(const Catalog& catalog) {
                                                     : own->second.make(*contexts_.back()));
     radio_->attach(id, *agents_.back());
   }
+  Dropouts dropouts = dropouts_of(scenario, simulation_.seed(), prepared_->end);
+  if (!dropouts.agents().empty()) {
+    life_ = std::make_unique<Life>(simulation_, *radio_, agents_, std::move(dropouts));
+  }
 }
 
 std::unique_ptr<Agent> Run::make_estimator(AgentId id) {
@@ -205,6 +219,7 @@ std::unique_ptr<Agent> Run::make_estimator(AgentId id) {
             : talk_phase(talk_phase_of(spec.talk.phase), period, id,
                          static_cast<int>(prepared_->specs.size()), simulation_.seed());
     options.talk = PeriodicTalk{.period = period, .phase = phase};
+    options.acknowledged = spec.talk.acknowledged == "on";
   }
   return std::make_unique<EstimatorAgent>(*contexts_[i], *witness_, std::move(options));
 }
@@ -212,6 +227,7 @@ std::unique_ptr<Agent> Run::make_estimator(AgentId id) {
 RunEnd Run::run() {
   try {
     if (witness_) witness_->start();
+    if (life_) life_->start();
     for (std::size_t i = 0; i < agents_.size(); ++i) {
       simulation_.acting_for(static_cast<AgentId>(i));
       agents_[i]->start();
@@ -233,6 +249,7 @@ RunEnd Run::run() {
 }
 
 void Run::keep_record_only() {
+  life_.reset();
   agents_.clear();
   contexts_.clear();
   radio_.reset();
@@ -244,6 +261,7 @@ void Run::leave_final_values() {
   if (witness_) witness_->finish();
   radio_->finish();
   record_radio();
+  record_links();
   record_log();
 }
 
@@ -257,11 +275,27 @@ void Run::record_radio() {
     scalar("packets", static_cast<double>(counts.packets));
     scalar("bytes_sent", static_cast<double>(counts.bytes_sent));
     scalar("air_time_s", counts.air_time.seconds());
+    scalar("queue_delay_mean_s", counts.queue_delay.seconds() / static_cast<double>(counts.begun));
+    scalar("delivery_ratio",
+           static_cast<double>(counts.fates[0]) / static_cast<double>(counts.expected));
+    scalar("frames", static_cast<double>(counts.frames));
+    scalar("acknowledgements", static_cast<double>(counts.acknowledgements));
     for (int f = 0; f < fate_count; ++f) {
       scalar(std::string("packets_") + to_string(static_cast<Fate>(f)),
              static_cast<double>(counts.fates[static_cast<std::size_t>(f)]));
     }
   }
+}
+
+void Run::record_links() {
+  Record& record = simulation_.record();
+  radio_->visit_links([&](AgentId from, AgentId to, const FateCounts& counts) {
+    for (int f = 0; f < fate_count; ++f) {
+      const std::uint64_t packets = counts[static_cast<std::size_t>(f)];
+      if (packets == 0) continue;
+      record.link({from, to, record.name(to_string(static_cast<Fate>(f))), packets});
+    }
+  });
 }
 
 void Run::record_log() {

@@ -15,6 +15,8 @@
 #include "agents/catalog.hpp"
 #include "agents/estimator_agent.hpp"
 #include "agents/witness.hpp"
+#include "scenarios/life.hpp"
+#include "scenarios/links.hpp"
 #include "scenarios/loader.hpp"
 #include "scenarios/scenario.hpp"
 #include "sim/world/mrclam.hpp"
@@ -40,11 +42,12 @@ class LogCache {
 struct PreparedScenario {
   Scenario scenario;
   Time end;
-  std::vector<std::string> names;       ///< of agents
-  std::vector<const AgentSpec*> specs;  ///< of each agent, into `scenario`
-  Topology topology = Topology::full(1);
-  std::vector<Subject> subjects;                       ///< empty: nothing for the witness to watch
-  std::vector<std::vector<PositionSensor>> sensors;    ///< of each agent
+  std::vector<std::string> names;                    ///< of agents
+  std::vector<const AgentSpec*> specs;               ///< of each agent, into `scenario`
+  AgentPlaces places;                                ///< of agents
+  std::optional<LinkPlan> links;                     ///< unless the graph is drawn anew in each run
+  std::vector<Subject> subjects;                     ///< empty: nothing for the witness to watch
+  std::vector<std::vector<PositionSensor>> sensors;  ///< of each agent
   std::vector<std::vector<Observation>> observations;  ///< of each agent, from a log
   std::shared_ptr<const mrclam::Dataset> log;
   std::vector<Metric> series;
@@ -78,6 +81,7 @@ class Run {
   std::unique_ptr<Agent> make_estimator(AgentId id);
   void leave_final_values();
   void record_radio();
+  void record_links();
   void record_log();
 
   // The order matters: what is below is destroyed first and may use what is above.
@@ -87,6 +91,7 @@ class Run {
   std::unique_ptr<Radio> radio_;
   std::vector<std::unique_ptr<Context>> contexts_;
   std::vector<std::unique_ptr<Agent>> agents_;
+  std::unique_ptr<Life> life_;
 };
 
 }  // namespace hearsay

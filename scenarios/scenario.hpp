@@ -55,10 +55,11 @@ struct EstimatorSpec {
 };
 
 struct TalkSpec {
-  std::string policy = "periodic";  ///< "periodic" | "never"
-  double period_s = 5.0;            ///< > 0
-  std::string phase = "random";     ///< "random" | "staggered" | "together"
-  std::optional<double> phase_s;    ///< this agent's own phase instead, in [0, period)
+  std::string policy = "periodic";   ///< "periodic" | "never"
+  double period_s = 5.0;             ///< > 0
+  std::string phase = "random";      ///< "random" | "staggered" | "together"
+  std::optional<double> phase_s;     ///< this agent's own phase instead, in [0, period)
+  std::string acknowledged = "off";  ///< "on" | "off"
 };
 
 struct AgentSpec {
@@ -77,6 +78,7 @@ struct RecordSpec {
   std::vector<std::string> series;  ///< names of metrics kept over time; empty: none
   double series_period_s = 1.0;     ///< > 0; samples at 0, period, 2·period, … and at the end
   std::string messages = "counts";  ///< "all" | "counts"
+  std::string links = "on";         ///< "on" | "off"
   std::string ledger = "on";        ///< "on" | "off"
 };
 
@@ -88,6 +90,7 @@ struct Scenario {
   WorldSpec world;
   RadioSpec radio;
   std::vector<AgentSpec> agents;  ///< at least one
+  std::vector<DropoutSpec> dropouts;
   RecordSpec record;
 
   /// Number of agents: the sum of counts.

@@ -1,6 +1,7 @@
 #include "scenarios/scenario_under_check.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <numeric>
 
 #include "scenarios/names.hpp"
@@ -48,17 +49,37 @@ std::optional<std::size_t> ScenarioUnderCheck::agent_called(const std::string& n
   return *at;
 }
 
+std::string ScenarioUnderCheck::no_agent_called(std::string_view name) const {
+  const auto near = nearest_name(name, names_);
+  return "there is no such agent" + (near ? "; did you mean '" + *near + "'?" : "");
+}
+
+std::string ScenarioUnderCheck::no_agent_with(const std::string& number) const {
+  const auto last = names_.size() - 1;
+  const std::string known =
+      last == 0 ? "0 is the only one" : "they are 0 … " + std::to_string(last);
+  return "there is no agent " + number + "; " + known;
+}
+
 int ScenarioUnderCheck::resolve_agent(const TomlNode& end, const KeyPath& path, int given) const {
   if (end.type == TomlNode::Type::string) {
     if (const auto agent = agent_called(end.text)) return static_cast<int>(*agent);
-    const auto near = nearest_name(end.text, names_);
-    reject(end, path, "there is no such agent" + (near ? "; did you mean '" + *near + "'?" : ""));
+    reject(end, path, no_agent_called(end.text));
   }
-  const int last = scenario.agent_count() - 1;
-  if (given >= 0 && given <= last) return given;
-  const std::string known =
-      last == 0 ? "0 is the only one" : "they are 0 … " + std::to_string(last);
-  reject(locate(path), path, "there is no agent " + std::to_string(given) + "; " + known);
+  if (given >= 0 && static_cast<std::size_t>(given) < names_.size()) return given;
+  reject(locate(path), path, no_agent_with(std::to_string(given)));
+}
+
+int ScenarioUnderCheck::resolve_agent(const CsvFile& csv, std::size_t row,
+                                      std::size_t column) const {
+  const std::string text(csv.text(row, column));
+  if (const auto agent = agent_called(text)) return static_cast<int>(*agent);
+  const bool digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+  if (!digits) csv.reject(row, column, no_agent_called(text));
+  std::size_t number = 0;
+  const auto parsed = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (parsed.ec == std::errc() && number < names_.size()) return static_cast<int>(number);
+  csv.reject(row, column, no_agent_with(shortened(text)));
 }
 
 std::optional<std::size_t> first_duplicate(const std::vector<std::string>& names) {

@@ -4,8 +4,10 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "scenarios/csv.hpp"
 #include "scenarios/document.hpp"
 #include "scenarios/reading.hpp"
 #include "scenarios/scenario.hpp"
@@ -33,8 +35,14 @@ class ScenarioUnderCheck {
   /// The number of the agent that the element `end` at `path` names: by its name, or, `given`, by
   /// number. @throws InputError if there is none.
   int resolve_agent(const TomlNode& end, const KeyPath& path, int given) const;
+  /// The number of the agent that a field of a CSV file names, by name or by number.
+  /// @throws InputError if there is none.
+  int resolve_agent(const CsvFile& csv, std::size_t row, std::size_t column) const;
 
  private:
+  std::string no_agent_called(std::string_view name) const;
+  std::string no_agent_with(const std::string& number) const;
+
   const TomlNode& root_;
   std::vector<std::string> names_;
   std::vector<std::size_t> by_name_;  // agents sorted by name
@@ -46,8 +54,18 @@ inline bool placed(const AgentSpec& agent) { return agent.position_m || agent.ci
 /// The first one whose name an earlier one has, too.
 std::optional<std::size_t> first_duplicate(const std::vector<std::string>& names);
 
-/// Checks [radio], and finds the numbers of agents in edges.
+/// Checks queue, frames and how the channel is shared.
+/// @throws InputError.
+void check_transmitter(ScenarioUnderCheck& file);
+/// Checks [radio], finds the numbers of agents in it and reads its files.
 /// @throws InputError.
 void check_radio(ScenarioUnderCheck& file);
+/// The part of check_radio() about who hears whom when.
+void check_links(ScenarioUnderCheck& file);
+
+/// Checks losses, propagation, jammers and dropouts, and finds the numbers of agents in them. Part
+/// of check_radio().
+/// @throws InputError.
+void check_channel(ScenarioUnderCheck& file);
 
 }  // namespace hearsay

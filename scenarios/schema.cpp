@@ -17,10 +17,14 @@ namespace {
 const char* type_of(double) { return "number"; }
 const char* type_of(int) { return "integer"; }
 const char* type_of(std::uint64_t) { return "integer"; }
+const char* type_of(bool) { return "boolean"; }
+const char* type_of(const AgentRef&) { return "agent"; }
+const char* type_of(const std::vector<AgentRef>&) { return "array of agents"; }
 const char* type_of(const std::string&) { return "string"; }
 const char* type_of(const std::vector<double>&) { return "2 coordinates"; }
 const char* type_of(const std::vector<std::string>&) { return "array of strings"; }
 const char* type_of(const std::vector<std::array<int, 2>>&) { return "array of pairs"; }
+const char* type_of(const std::vector<std::vector<int>>&) { return "array of groups"; }
 const char* type_of(const std::map<std::string, double>&) { return "number"; }
 template <class T>
 const char* type_of(const std::optional<T>&) {
@@ -174,12 +178,16 @@ std::vector<KeyStep> parse_key(std::string_view key, const std::string& origin) 
       fail(suggestion(steps, i, path));
     }
     path += (path.empty() ? "" : ".") + steps[i].name;
-    const auto& arrays = schema.table_arrays;
-    if (steps[i].index >= 0 && std::find(arrays.begin(), arrays.end(), path) == arrays.end()) {
+    if (steps[i].index >= 0 && !is_table_array(path)) {
       fail("'" + path + "' takes no number in brackets");
     }
   }
   return steps;
+}
+
+bool is_table_array(const std::string& path) {
+  const auto& arrays = schema_paths().table_arrays;
+  return std::find(arrays.begin(), arrays.end(), path) != arrays.end();
 }
 
 bool covers(const std::vector<KeyStep>& later, const std::vector<KeyStep>& earlier) {

@@ -31,6 +31,9 @@ struct KeyStep {
 /// ("agents.sensor"). @throws InputError "<origin>: unknown key '…'; did you mean '…'?".
 std::vector<KeyStep> parse_key(std::string_view key, const std::string& origin);
 
+/// True if the key, given without indices, is an array of tables ("agents", "world.targets").
+bool is_table_array(const std::string& path);
+
 /// True if setting `later` leaves nothing of what setting `earlier` did (same key, or its table).
 bool covers(const std::vector<KeyStep>& later, const std::vector<KeyStep>& earlier);
 

@@ -57,6 +57,8 @@ class StudyReader {
   void read_scalars();
   void collect(const TomlNode& table, const std::string& prefix, const std::string& axis,
                std::vector<Override>& into) const;
+  void resolve_path(TomlNode& value, const std::string& key, const std::string& table,
+                    const std::string& entry) const;
   Override override_from(TomlNode value, const std::string& key, const std::string& axis) const;
   void read_axes(const TomlNode& node);
   void read_values(const TomlNode& node, const KeyPath& path, Axis& axis) const;
@@ -112,14 +114,19 @@ Override StudyReader::override_from(TomlNode value, const std::string& key,
   if (key == "seed") {
     throw InputError(place + ": 'seed' comes from the study's own seed and the repetition");
   }
-  // A directory in a study file is meant from there.
-  TomlNode* directory = key == "world.log.directory" ? &value : nullptr;
-  if (key == "world.log") directory = value.find("directory");
-  if (directory && directory->type == TomlNode::Type::string && !directory->text.empty()) {
-    const auto folder = std::filesystem::path(study_.file).parent_path();
-    directory->text = (folder / directory->text).lexically_normal().string();
-  }
+  resolve_path(value, key, "world.log", "directory");
+  resolve_path(value, key, "radio", "contacts");
   return {key, to_toml(value), origin};
+}
+
+// A path in a study file is meant from there. It may be set alone or with the table around it.
+void StudyReader::resolve_path(TomlNode& value, const std::string& key, const std::string& table,
+                               const std::string& entry) const {
+  TomlNode* path = key == table + "." + entry ? &value : nullptr;
+  if (key == table) path = value.find(entry);
+  if (!path || path->type != TomlNode::Type::string || path->text.empty()) return;
+  const auto folder = std::filesystem::path(study_.file).parent_path();
+  path->text = (folder / path->text).lexically_normal().string();
 }
 
 // Overrides from a table whose keys are "agents.sensor.period_s", with or without the quotes.

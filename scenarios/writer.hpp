@@ -8,12 +8,15 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/channel_spec.hpp"
 #include "scenarios/document.hpp"
 
 namespace hearsay {
 
 inline std::string toml_text(double value) { return to_toml(value); }
 inline std::string toml_text(int value) { return std::to_string(value); }
+inline std::string toml_text(bool value) { return value ? "true" : "false"; }
+inline std::string toml_text(const AgentRef& value) { return std::to_string(value.number); }
 inline std::string toml_text(std::uint64_t value) { return std::to_string(value); }
 inline std::string toml_text(const std::string& value) { return to_toml(std::string_view(value)); }
 

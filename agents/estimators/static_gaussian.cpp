@@ -36,25 +36,33 @@ StaticGaussianEstimator::StaticGaussianEstimator(const Options& options,
   }
   const auto subjects = static_cast<std::size_t>(options.subjects);
   own_.assign(subjects, unknown(options.dimension));
-  for (const AgentId id : neighbours) {
-    Neighbour neighbour{.id = id, .memory = {}};
-    if (rule_.memory != Memory::nothing) {
-      neighbour.memory.assign(subjects, unknown(options.dimension));
-    }
-    neighbours_.push_back(std::move(neighbour));
+  if (rule_.sends == Sends::local_update) unsent_ = own_;
+  for (const AgentId id : neighbours) neighbours_.push_back(make_neighbour(id));
+}
+
+StaticGaussianEstimator::Neighbour StaticGaussianEstimator::make_neighbour(AgentId id) const {
+  Neighbour neighbour{.id = id, .memory = {}};
+  if (rule_.memory != Memory::nothing) {
+    neighbour.memory.assign(own_.size(), unknown(options_.dimension));
   }
+  return neighbour;
 }
 
 void StaticGaussianEstimator::measured(int subject, const Belief& information,
                                        std::size_t measurement) {
-  TrackedBelief& own = own_[static_cast<std::size_t>(subject)];
-  own.belief += information;
-  if (keeps_ledger()) own.ledger.measured(measurement);
+  const auto s = static_cast<std::size_t>(subject);
+  const auto use = [&](TrackedBelief& tracked) {
+    tracked.belief += information;
+    if (keeps_ledger()) tracked.ledger.measured(measurement);
+  };
+  use(own_[s]);
+  if (!unsent_.empty()) use(unsent_[s]);
   ++counts_.measurements;
 }
 
 StaticGaussianEstimator::Speech StaticGaussianEstimator::speech(AgentId neighbour) {
   const Neighbour* to = neighbour == no_agent ? nullptr : find(neighbour);
+  const std::vector<TrackedBelief>& says = unsent_.empty() ? own_ : unsent_;
   const bool less_heard = rule_.sends == Sends::belief_less_heard;
   require(!less_heard || to != nullptr, "a rule that speaks to each neighbour needs one");
   LedgerRider* rider = nullptr;
@@ -68,11 +76,11 @@ StaticGaussianEstimator::Speech StaticGaussianEstimator::speech(AgentId neighbou
   for (std::size_t s = 0; s < own_.size(); ++s) {
     gaussian::BeliefEntry& entry = message.beliefs[spoken];
     entry.subject = static_cast<std::uint32_t>(s);
-    entry.belief = own_[s].belief;
+    entry.belief = says[s].belief;
     if (less_heard) entry.belief -= to->memory[s].belief;
     if (entry.belief.omega.isZero(0.0)) continue;
     if (rider) {
-      rider->ledgers[spoken] = own_[s].ledger;
+      rider->ledgers[spoken] = says[s].ledger;
       if (less_heard) {
         rider->ledgers[spoken].combine(1.0, 0.0, own_[s].ledger, 1.0, &to->memory[s].ledger);
       }
@@ -89,6 +97,7 @@ StaticGaussianEstimator::Speech StaticGaussianEstimator::speech(AgentId neighbou
 }
 
 void StaticGaussianEstimator::sent(AgentId neighbour) {
+  for (TrackedBelief& unsent : unsent_) unsent = unknown(options_.dimension);
   if (rule_.memory != Memory::last_exchanged) return;
   for (Neighbour& to : neighbours_) {
     if (neighbour == no_agent || neighbour == to.id) to.memory = own_;
@@ -173,10 +182,19 @@ void StaticGaussianEstimator::new_incarnation() {
   next_count_ = 1;
 }
 
+void StaticGaussianEstimator::forget() {
+  new_incarnation();
+  for (std::vector<TrackedBelief>* beliefs : {&own_, &unsent_}) {
+    for (TrackedBelief& tracked : *beliefs) tracked = unknown(options_.dimension);
+  }
+  for (Neighbour& neighbour : neighbours_) neighbour = make_neighbour(neighbour.id);
+}
+
 StaticGaussianEstimator::Neighbour* StaticGaussianEstimator::find(AgentId id) {
   const auto found = std::lower_bound(neighbours_.begin(), neighbours_.end(), id,
                                       [](const Neighbour& n, AgentId i) { return n.id < i; });
-  return found != neighbours_.end() && found->id == id ? &*found : nullptr;
+  if (found != neighbours_.end() && found->id == id) return &*found;
+  return options_.strangers ? &*neighbours_.insert(found, make_neighbour(id)) : nullptr;
 }
 
 }  // namespace hearsay

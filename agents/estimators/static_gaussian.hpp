@@ -64,6 +64,7 @@ class StaticGaussianEstimator {
     int dimension = 2;                        ///< of each state, n
     LedgerPool* ledgers = nullptr;            ///< nullptr: no ledger is kept; not owned
     EstimatorWorkspace* workspace = nullptr;  ///< nullptr: one of its own; not owned
+    bool strangers = false;  ///< others than `neighbours` may be heard, and are then remembered
   };
   /// `neighbours`: whom a memory is kept for, by number.
   StaticGaussianEstimator(const Options& options, std::span<const AgentId> neighbours);
@@ -78,6 +79,7 @@ class StaticGaussianEstimator {
     RiderPtr rider;
   };
   /// The message to `neighbour`, or to all of them for no_agent (rules that send one broadcast).
+  /// A stranger, if there may be any, is remembered from now on.
   /// Subjects nothing is known about are left out; an empty speech says nothing at all.
   Speech speech(AgentId neighbour);
   /// Tells that the last speech to `neighbour` (no_agent: to all) was handed over to the radio.
@@ -88,6 +90,8 @@ class StaticGaussianEstimator {
 
   /// As if the agent had rebooted: later messages are newer than all before.
   void new_incarnation();
+  /// The same after a reboot that lost the memory: it knows nothing and remembers nobody's words.
+  void forget();
 
   gaussian::Rule rule() const { return options_.rule; }
   int subjects() const { return static_cast<int>(own_.size()); }
@@ -113,6 +117,7 @@ class StaticGaussianEstimator {
     std::vector<TrackedBelief> memory;  // by subject; what the rule books as common
   };
   Neighbour* find(AgentId id);
+  Neighbour make_neighbour(AgentId id) const;
   bool outdated(Neighbour& from, const gaussian::Message& message) const;
   void fuse(int subject, Neighbour& from, const gaussian::Belief& belief, const Ledger* ledger);
   void note_gain(const gaussian::Belief& before, const gaussian::Belief& received,
@@ -122,6 +127,7 @@ class StaticGaussianEstimator {
   Options options_;
   const gaussian::RuleInfo& rule_;
   std::vector<TrackedBelief> own_;
+  std::vector<TrackedBelief> unsent_;  // by subject; for rules that send local updates
   std::vector<Neighbour> neighbours_;
   std::uint32_t incarnation_ = 0;
   std::uint32_t next_count_ = 1;

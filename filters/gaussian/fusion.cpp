@@ -9,7 +9,7 @@ namespace {
 constexpr std::string_view exact_ledger =
     "exact for static linear-Gaussian problems while sending does not depend on measured values";
 
-constexpr std::array<RuleInfo, 6> table = {{
+constexpr std::array<RuleInfo, 7> table = {{
     {Rule::none, "none", Sends::nothing, Memory::nothing,
      "nothing: an agent believes only what it measured itself",
      "always, as far as its own measurements are", exact_ledger,
@@ -18,6 +18,11 @@ constexpr std::array<RuleInfo, 6> table = {{
      "whatever is heard is news: sender and receiver share no measurement",
      "only as long as no measurement reaches an agent twice, so not beyond a first exchange",
      exact_ledger, "Merino 2007, eq. 3.36 without its common term"},
+    {Rule::local_update, "local-update", Sends::local_update, Memory::nothing,
+     "everybody hears everybody's messages, each exactly once",
+     "always: no measurement is counted twice; what was lost is missing for ever, and nothing "
+     "travels beyond the first hearer",
+     exact_ledger, "Merino 2007, section 3.2.3"},
     {Rule::channel, "channel", Sends::belief, Memory::last_exchanged,
      "a tree of reliable, ordered links on which beliefs never cross",
      "exact there; loops count twice; lost or crossing beliefs lose information, up to an "
@@ -68,6 +73,7 @@ Coefficients coefficients(Rule rule, const Belief& own, const Belief& received) 
   if (!finite(own) || !finite(received)) return {1.0, 0.0, 0.0, "overflow"};
   switch (rule) {
     case Rule::naive:
+    case Rule::local_update:
       return {1.0, 1.0, 0.0, nullptr};
     case Rule::channel:
     case Rule::channel_robust:

@@ -5,13 +5,15 @@
 // with coefficients that depend on the matrices alone. Whatever rides along with a belief (the
 // rumour ledger) is combined with the same coefficients, so it cannot disagree with the rule.
 //
-//   rule            sends            a, b, c                     remembers for each neighbour
-//   none            nothing          1, 0, 0                     nothing
-//   naive           own              1, 1, 0                     nothing
-//   channel         own              1, 1, 1                     common: last belief sent or
-//   received channel-robust  own − heard      1, 1, 1                     common: last message
-//   heard from it ci-det          own              ω, 1−ω, 0 by max |Ω|        nothing ci-trace own
-//   ω, 1−ω, 0 by min tr Σ       nothing
+//   rule            sends             a, b, c                   remembers for each neighbour
+//   none            nothing           1, 0, 0                   nothing
+//   naive           own               1, 1, 0                   nothing
+//   local-update    own measurements  1, 1, 0                   nothing
+//                   since it last sent
+//   channel         own               1, 1, 1                   common: last belief sent or
+//   received channel-robust  own − heard       1, 1, 1                   common: last message heard
+//   from it ci-det          own               ω, 1−ω, 0 by max |Ω|      nothing ci-trace        own
+//   ω, 1−ω, 0 by min tr Σ     nothing
 #pragma once
 
 #include <array>
@@ -23,12 +25,13 @@
 
 namespace hearsay::gaussian {
 
-enum class Rule { none, naive, channel, channel_robust, ci_det, ci_trace };
+enum class Rule { none, naive, local_update, channel, channel_robust, ci_det, ci_trace };
 
 /// What a rule sends and to whom.
 enum class Sends {
   nothing,
   belief,            ///< the whole belief, one broadcast
+  local_update,      ///< the information of its own measurements since it last sent, one broadcast
   belief_less_heard  ///< a frame for each neighbour: the belief less what that neighbour said last
 };
 

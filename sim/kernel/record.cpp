@@ -130,6 +130,12 @@ void Record::message(const MessageRow& row) {
   if (options_.keep_messages) messages_.push_back(row);
 }
 
+void Record::link(const LinkRow& row) {
+  require_open();
+  run_canon_.row('L', row.sender, row.receiver, hash(row.fate), row.packets);
+  links_.push_back(row);
+}
+
 void Record::event(Time time, AgentId agent, std::string_view kind, std::string_view detail) {
   require_open();
   run_canon_.row('E', time, agent, fnv1a(kind));

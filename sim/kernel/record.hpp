@@ -44,6 +44,13 @@ struct MessageRow {
   std::uint32_t bytes;
   NameId fate;
 };
+/// How many packets met a fate on a directed link, over the whole run.
+struct LinkRow {
+  AgentId sender;
+  AgentId receiver;
+  NameId fate;
+  std::uint64_t packets;
+};
 struct EventRow {
   Time time;
   AgentId agent;  ///< no_agent if it belongs to none
@@ -89,6 +96,7 @@ class Record {
   void series(Time time, AgentId agent, NameId subject, NameId name, double value,
               Origin origin = Origin::run);
   void message(const MessageRow& row);
+  void link(const LinkRow& row);
   void event(Time time, AgentId agent, std::string_view kind, std::string_view detail);
 
   /// Passes what is still buffered to the digests. Call once, after the last row: a row that comes
@@ -100,6 +108,7 @@ class Record {
   std::span<const ScalarRow> scalars() const { return scalars_; }
   std::span<const SeriesRow> series() const { return series_; }
   std::span<const MessageRow> messages() const { return messages_; }
+  std::span<const LinkRow> links() const { return links_; }
   std::span<const EventRow> events() const { return events_; }
   /// Events beyond `events_max`.
   std::uint64_t events_not_kept() const { return events_not_kept_; }
@@ -131,6 +140,7 @@ class Record {
   std::vector<ScalarRow> scalars_;
   std::vector<SeriesRow> series_;
   std::vector<MessageRow> messages_;
+  std::vector<LinkRow> links_;
   std::vector<EventRow> events_;
   std::uint64_t events_not_kept_ = 0;
   bool finished_ = false;

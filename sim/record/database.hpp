@@ -8,6 +8,7 @@
 //   axis(run, name, value)     agent(run, id, name, kind)     scalar(run, agent, name, value)
 //   series(run, t_s, agent, subject, name, value)
 //   message(run, sent_s, arrived_s, sender, receiver, kind, bytes, fate)
+//   link(run, sender, receiver, fate, packets)      how many packets met which fate on a link
 //   event(run, t_s, agent, kind, detail)
 // Names are stored once, as integers; the views show them as text. NaN is stored as NULL, −0 as 0;
 // a sender, receiver or agent that is nobody is NULL. Times are the double nearest to the simulated
@@ -33,7 +34,7 @@
 namespace hearsay {
 
 /// Raised when tables change. A file of another version is refused by name of both.
-inline constexpr int schema_version = 1;
+inline constexpr int schema_version = 2;
 /// SQLite application id of our files ("hrsy").
 inline constexpr std::int32_t application_id = 0x68727379;
 

@@ -49,11 +49,17 @@ constexpr RowsOfRun timed_rows[] = {
      "WHERE ?1 AND e.id >= ?2 AND e.id < ?3 ORDER BY e.id",
      3, 0},
 };
-constexpr RowsOfRun scalar_rows = {
-    "scalar",
-    "SELECT q.agent, q.name, s.value FROM scalar_row s CROSS JOIN quantity q ON q.id = s.quantity "
-    "WHERE ?1 AND s.id >= ?2 AND s.id < ?3 ORDER BY s.id",
-    2, -1};
+constexpr RowsOfRun summed_rows[] = {
+    {"scalar",
+     "SELECT q.agent, q.name, s.value FROM scalar_row s CROSS JOIN quantity q ON q.id = s.quantity "
+     "WHERE ?1 AND s.id >= ?2 AND s.id < ?3 ORDER BY s.id",
+     2, -1},
+    {"link",
+     "SELECT l.sender, l.receiver, fate.text AS fate, l.packets "
+     "FROM link_row l CROSS JOIN name fate ON fate.id = l.fate "
+     "WHERE ?1 AND l.id >= ?2 AND l.id < ?3 ORDER BY l.id",
+     3, -1},
+};
 
 /// Columns of `run`: what was asked, and what came out.
 const std::vector<std::string> asked_columns = {"study",      "scenario", "parameters",
@@ -166,8 +172,7 @@ class Comparison {
         a_(open_to_read(file_a)),
         b_(open_to_read(file_b)),
         run_a_(a_, "SELECT * FROM run WHERE id = ?1"),
-        run_b_(b_, "SELECT * FROM run WHERE id = ?1"),
-        scalars_(scalar_rows, a_, b_) {
+        run_b_(b_, "SELECT * FROM run WHERE id = ?1") {
     // One state of each file throughout, even while it is being written.
     a_.exec("BEGIN");
     b_.exec("BEGIN");
@@ -176,6 +181,9 @@ class Comparison {
     }
     for (const RowsOfRun& rows : timed_rows) {
       timed_.push_back(std::make_unique<RowsInStep>(rows, a_, b_));
+    }
+    for (const RowsOfRun& rows : summed_rows) {
+      summed_.push_back(std::make_unique<RowsInStep>(rows, a_, b_));
     }
   }
 
@@ -282,7 +290,9 @@ class Comparison {
       if (found && (!earliest || found->time_s < earliest->time_s)) earliest = std::move(found);
     }
     if (earliest) return earliest->text;
-    if (auto found = scalars_.first(id_a, id_b)) return found->text;
+    for (const auto& rows : summed_) {
+      if (auto found = rows->first(id_a, id_b)) return found->text;
+    }
     // The digest differs with any row, hence comes last; also rows that are not kept count in it.
     return columns(result_columns);
   }
@@ -290,8 +300,7 @@ class Comparison {
   std::string file_a_, file_b_;
   SQLite::Database a_, b_;
   Query run_a_, run_b_;
-  RowsInStep scalars_;
-  std::vector<std::unique_ptr<RowsInStep>> asked_, timed_;
+  std::vector<std::unique_ptr<RowsInStep>> asked_, timed_, summed_;
 };
 
 }  // namespace

@@ -37,6 +37,8 @@ CREATE TABLE series_row(id INTEGER PRIMARY KEY, t_s REAL NOT NULL,
 CREATE TABLE message_row(id INTEGER PRIMARY KEY, sent_s REAL NOT NULL, arrived_s REAL NOT NULL,
                          sender INTEGER, receiver INTEGER, kind INTEGER NOT NULL REFERENCES name,
                          bytes INTEGER NOT NULL, fate INTEGER NOT NULL REFERENCES name);
+CREATE TABLE link_row(id INTEGER PRIMARY KEY, sender INTEGER NOT NULL, receiver INTEGER NOT NULL,
+                      fate INTEGER NOT NULL REFERENCES name, packets INTEGER NOT NULL);
 CREATE TABLE event_row(id INTEGER PRIMARY KEY, t_s REAL NOT NULL, agent INTEGER,
                        kind INTEGER NOT NULL REFERENCES name, detail TEXT NOT NULL);
 
@@ -65,6 +67,10 @@ CREATE VIEW message(run, sent_s, arrived_s, sender, receiver, kind, bytes, fate)
   SELECT r.id, +m.sent_s, +m.arrived_s, +m.sender, +m.receiver, kind.text, +m.bytes, fate.text
   FROM run_row r CROSS JOIN message_row m ON m.id >= r.id << 32 AND m.id < (r.id + 1) << 32
   CROSS JOIN name kind ON kind.id = +m.kind CROSS JOIN name fate ON fate.id = +m.fate;
+CREATE VIEW link(run, sender, receiver, fate, packets) AS
+  SELECT r.id, +l.sender, +l.receiver, fate.text, +l.packets
+  FROM run_row r CROSS JOIN link_row l ON l.id >= r.id << 32 AND l.id < (r.id + 1) << 32
+  CROSS JOIN name fate ON fate.id = +l.fate;
 CREATE VIEW event(run, t_s, agent, kind, detail) AS
   SELECT r.id, +e.t_s, +e.agent, kind.text, +e.detail
   FROM run_row r CROSS JOIN event_row e ON e.id >= r.id << 32 AND e.id < (r.id + 1) << 32

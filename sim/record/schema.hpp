@@ -21,8 +21,8 @@ namespace hearsay::record {
 extern const char* const schema_sql;
 
 /// Tables and views that analysis may rely on, in the order of an export.
-inline constexpr const char* public_tables[] = {"study",  "run",    "axis",    "agent",
-                                                "scalar", "series", "message", "event"};
+inline constexpr const char* public_tables[] = {"study",  "run",     "axis", "agent", "scalar",
+                                                "series", "message", "link", "event"};
 
 /// Runs and rows a run are below this.
 inline constexpr std::int64_t run_stride = std::int64_t{1} << 32;

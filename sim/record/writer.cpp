@@ -92,6 +92,7 @@ struct DatabaseWriter::Impl {
         series_rows(database, feed, "series_row", "t_s, quantity, value", 3),
         message_rows(database, feed, "message_row",
                      "sent_s, arrived_s, sender, receiver, kind, bytes, fate", 7),
+        link_rows(database, feed, "link_row", "sender, receiver, fate, packets", 4),
         event_rows(database, feed, "event_row", "t_s, agent, kind, detail", 4),
         names(database),
         quantities(database, names),
@@ -136,7 +137,7 @@ struct DatabaseWriter::Impl {
   std::string file;
   SQLite::Database database;
   Feed feed;
-  RowTable scalar_rows, series_rows, message_rows, event_rows;
+  RowTable scalar_rows, series_rows, message_rows, link_rows, event_rows;
   NameTable names;
   QuantityTable quantities;
   ListTable agent_lists, axis_lists;
@@ -212,6 +213,19 @@ void DatabaseWriter::Impl::add_rows(std::int64_t run, bool last, const Record& r
         return cell.integer(name.at(message.fate));
     }
   });
+  link_rows.insert(run, last, record.links().size(), [&](auto row, int column, Cell cell) {
+    const LinkRow& link = record.links()[row];
+    switch (column) {
+      case 0:
+        return cell.agent(link.sender);
+      case 1:
+        return cell.agent(link.receiver);
+      case 2:
+        return cell.integer(name.at(link.fate));
+      default:
+        return cell.integer(static_cast<std::int64_t>(link.packets));
+    }
+  });
   event_rows.insert(run, last, record.events().size(), [&](auto row, int column, Cell cell) {
     const EventRow& event = record.events()[row];
     switch (column) {
@@ -282,8 +296,8 @@ void DatabaseWriter::remove_run(std::int64_t id) {
   impl_->write([&] {
     SQLite::Database& database = impl_->database;
     if (database.exec("DELETE FROM run_row WHERE id = " + std::to_string(id)) == 0) return;
-    for (RowTable* rows :
-         {&impl_->scalar_rows, &impl_->series_rows, &impl_->message_rows, &impl_->event_rows}) {
+    for (RowTable* rows : {&impl_->scalar_rows, &impl_->series_rows, &impl_->message_rows,
+                           &impl_->link_rows, &impl_->event_rows}) {
       rows->remove(id);
     }
     database.exec("INSERT INTO removed_run VALUES(" + std::to_string(id) + ")");

@@ -16,7 +16,7 @@ std::size_t allocations_of(gaussian::Rule rule, bool ledger, bool measures) {
                                .series = {},
                                .series_period = 1000_s,
                                .ledger = ledger});
-  Radio radio(simulation, Topology::full(5), {.latency = 10_ms, .loss_probability = 0.2});
+  Radio radio(simulation, Topology::full(5), {.latency = 10_ms, .loss = Loss::bernoulli(0.2)});
   std::vector<std::unique_ptr<Context>> contexts;
   std::vector<std::unique_ptr<EstimatorAgent>> agents;
   for (AgentId id = 0; id < 5; ++id) {

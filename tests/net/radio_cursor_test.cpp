@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include <deque>
+
 #include "tests/net/bed.hpp"
 
 namespace hearsay {
@@ -98,9 +100,9 @@ class OverRadio final : public Players {
       : Players(load),
         radio_(simulation_, Topology::disk(places_m(load), 4.0),
                {.rate_bps = rate_bps,
-                .queue_packets_max = 1'000'000,
+                .queue = {.packets_max = 1'000'000},
                 .latency = latency,
-                .loss_probability = loss,
+                .loss = Loss::bernoulli(loss),
                 .propagation_m_per_s = load.m_per_s}) {
     for (AgentId a = 0; a < load.agents; ++a) {
       ears_.push_back(std::make_unique<Ear>(*this));
@@ -130,10 +132,7 @@ class OverRadio final : public Players {
 class Plain final : public Players {
  public:
   explicit Plain(const Load& load) : Players(load), topology_(Topology::disk(places_m(load), 4.0)) {
-    free_at_.resize(static_cast<std::size_t>(load.agents));
-    for (const char* fate : {"delivered", "lost", "out_of_range", "queue_full"}) {
-      simulation_.record().name(fate);
-    }
+    for (const char* fate : {"delivered", "lost"}) simulation_.record().name(fate);
     in_flight_ = simulation_.record().name("in_flight_at_end");
   }
 
@@ -152,9 +151,6 @@ class Plain final : public Players {
   };
 
   void send(AgentId from, std::size_t bytes, AgentId to) override {
-    Time& free_at = free_at_[static_cast<std::size_t>(from)];
-    free_at = std::max(free_at, simulation_.now()) +
-              Duration::seconds(8.0 * static_cast<double>(bytes) / rate_bps);
     auto flight = std::make_unique<Flight>(Flight{simulation_.now(), from, bytes, {}});
     for (const AgentId other : topology_.neighbours(from)) {
       if (to != no_agent && other != to) continue;
@@ -164,17 +160,39 @@ class Plain final : public Players {
                             .stream_at(Purpose("loss of a packet"), Entity::link(from, other),
                                        packets_[{from, other}]++)
                             .bernoulli(loss);
-      flight->arrivals.push_back({free_at + latency + way, other, lost});
+      flight->arrivals.push_back({Time::at(latency + way), other, lost});  // from the last bit on
     }
     std::stable_sort(flight->arrivals.begin(), flight->arrivals.end(),
                      [](const Arrival& a, const Arrival& b) { return a.time < b.time; });
     flights_.push_back(std::move(flight));
-    schedule(flights_.back().get());
+    std::deque<Flight*>& waiting = waiting_[from];
+    if (waiting.empty() && free_at_[from] <= simulation_.now()) {
+      return begin(flights_.back().get());
+    }
+    waiting.push_back(flights_.back().get());
+    if (waiting.size() == 1) wake(from);
+  }
+  void wake(AgentId from) {
+    simulation_.schedule(free_at_[from], Phase::update, [this, from] {
+      Flight* first = waiting_[from].front();
+      waiting_[from].pop_front();
+      begin(first);
+      if (!waiting_[from].empty()) wake(from);
+    });
+  }
+  void begin(Flight* flight) {
+    Time& free_at = free_at_[flight->from];
+    free_at =
+        simulation_.now() + Duration::seconds(8.0 * static_cast<double>(flight->bytes) / rate_bps);
+    for (Arrival& arrival : flight->arrivals) {
+      arrival.time = free_at + arrival.time.since_start();
+    }
+    schedule(flight);
   }
   void schedule(Flight* flight) {
     const bool nobody = flight->arrivals.empty();
-    const Time time = nobody ? free_at_[static_cast<std::size_t>(flight->from)] + latency
-                             : flight->arrivals[flight->next].time;
+    const Time time =
+        nobody ? free_at_[flight->from] + latency : flight->arrivals[flight->next].time;
     simulation_.schedule(time, Phase::update, [this, flight] { arrive(flight); });
   }
   void arrive(Flight* flight) {
@@ -199,7 +217,8 @@ class Plain final : public Players {
   }
 
   Topology topology_;
-  std::vector<Time> free_at_;
+  std::map<AgentId, Time> free_at_;
+  std::map<AgentId, std::deque<Flight*>> waiting_;
   std::map<std::pair<AgentId, AgentId>, std::uint64_t> packets_;
   std::vector<std::unique_ptr<Flight>> flights_;
   NameId in_flight_ = 0;

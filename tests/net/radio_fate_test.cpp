@@ -106,9 +106,9 @@ TEST(RadioFate, WhatIsUnderWayAtTheEndIsSettledInOrderOfSending) {
 
 TEST(RadioFate, EveryPacketHasOneFateAtEachPotentialReceiver) {
   Bed bed(Topology::ring(6), {.radio = {.rate_bps = 80.0,
-                                        .queue_packets_max = 3,
+                                        .queue = {.packets_max = 3},
                                         .latency = 300_ms,
-                                        .loss_probability = 0.3},
+                                        .loss = Loss::bernoulli(0.3)},
                               .end = Time::at(40_s)});
   // Each packet is sent at an instant of its own, which names it.
   std::map<std::pair<Time, AgentId>, std::set<AgentId>> expected;
@@ -140,11 +140,12 @@ TEST(RadioFate, EveryPacketHasOneFateAtEachPotentialReceiver) {
     packets += counts.packets;
   }
   EXPECT_EQ(packets, 400u);
-  for (int f = 0; f < fate_count; ++f) {
+  for (const Fate fate : {Fate::delivered, Fate::lost, Fate::out_of_range, Fate::queue_full,
+                          Fate::in_flight_at_end}) {
     std::uint64_t counted = 0;
-    for (AgentId a = 0; a < 6; ++a) counted += bed.count(a, static_cast<Fate>(f));
-    EXPECT_EQ(bed.rows(static_cast<Fate>(f)), counted);
-    EXPECT_GT(counted, 0u) << to_string(static_cast<Fate>(f)) << " is not put to the test";
+    for (AgentId a = 0; a < 6; ++a) counted += bed.count(a, fate);
+    EXPECT_EQ(bed.rows(fate), counted);
+    EXPECT_GT(counted, 0u) << to_string(fate) << " is not put to the test";
   }
 }
 

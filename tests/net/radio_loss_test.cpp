@@ -36,7 +36,7 @@ std::string pattern(const Bed& bed, AgentId sender, AgentId hearer) {
 
 std::string pattern(const Talk& talk, AgentId hearer) {
   Bed bed(Topology::full(3),
-          {.radio = {.loss_probability = talk.loss_probability}, .seed = talk.seed});
+          {.radio = {.loss = Loss::bernoulli(talk.loss_probability)}, .seed = talk.seed});
   for (int n = 0; n < talk.packets; ++n) {
     bed.at(10_ms * n, [&bed, &talk, n] {
       std::optional<std::uint64_t> tick;
@@ -106,7 +106,7 @@ TEST(RadioLoss, TheNthPacketDoesNotShareTheDrawOfTickN) {
 }
 
 TEST(RadioLoss, PacketsOfOneTickShareTheirFateOnALink) {
-  Bed bed(Topology::full(3), {.radio = {.rate_bps = 8e6, .loss_probability = p}});
+  Bed bed(Topology::full(3), {.radio = {.rate_bps = 8e6, .loss = Loss::bernoulli(p)}});
   for (int n = 0; n < 200; ++n) {
     for (int part = 0; part < 3; ++part) {
       bed.at(10_ms * n + 1_ms * part,
@@ -124,7 +124,7 @@ TEST(RadioLoss, PacketsOfOneTickShareTheirFateOnALink) {
 
 TEST(RadioLoss, TimedPacketsDoNotShiftTheOthers) {
   const std::string alone = pattern({.timed = false}, 1);
-  Bed bed(Topology::full(3), {.radio = {.rate_bps = 8e6, .loss_probability = p}});
+  Bed bed(Topology::full(3), {.radio = {.rate_bps = 8e6, .loss = Loss::bernoulli(p)}});
   for (int n = 0; n < 400; ++n) {
     bed.at(10_ms * n, [&bed] { bed.send(0, "x"); });
     bed.at(10_ms * n + 5_ms, [&bed, n] { bed.send(0, "timed", 1, static_cast<std::uint64_t>(n)); });
@@ -139,7 +139,7 @@ TEST(RadioLoss, TimedPacketsDoNotShiftTheOthers) {
 
 TEST(RadioLoss, PacketsToOthersDoNotShiftALink) {
   const std::string alone = pattern({.timed = false}, 1);
-  Bed bed(Topology::full(3), {.radio = {.rate_bps = 8e6, .loss_probability = p}});
+  Bed bed(Topology::full(3), {.radio = {.rate_bps = 8e6, .loss = Loss::bernoulli(p)}});
   for (int n = 0; n < 400; ++n) {
     bed.at(10_ms * n, [&bed] { bed.send(0, "to the other", 2); });
     bed.at(10_ms * n + 5_ms, [&bed, n] { bed.send(0, "x", n % 2 ? no_agent : 1); });
@@ -152,7 +152,7 @@ TEST(RadioLoss, ADroppedPacketUsesUpItsDraw) {
   const std::string alone = pattern({.timed = false}, 1);
   // Two packets every 20 ms into a queue of one that takes 15 ms: every second one is dropped.
   Bed bed(Topology::full(3),
-          {.radio = {.rate_bps = 8000.0, .queue_packets_max = 1, .loss_probability = p}});
+          {.radio = {.rate_bps = 8000.0, .queue = {.packets_max = 1}, .loss = Loss::bernoulli(p)}});
   for (int n = 0; n < 400; ++n) {
     bed.at(10_ms * n, [&bed] { bed.send(0, "fifteen bytes ."); });
   }

@@ -50,7 +50,10 @@ TEST(RadioPool, NothingIsAllocatedInSteadyState) {
   FnvDigest digest;
   Simulation simulation({.end = Time::at(6_s), .record = {.digest = &digest}});
   Radio radio(simulation, Topology::full(5),
-              {.rate_bps = 1e6, .queue_packets_max = 8, .latency = 3_ms, .loss_probability = 0.1});
+              {.rate_bps = 1e6,
+               .queue = {.packets_max = 8},
+               .latency = 3_ms,
+               .loss = Loss::bernoulli(0.1)});
   std::vector<std::unique_ptr<Chatter>> agents;
   for (AgentId a = 0; a < 5; ++a) {
     agents.push_back(std::make_unique<Chatter>(simulation, radio, a));
@@ -75,7 +78,7 @@ TEST(RadioPool, NothingIsAllocatedInSteadyState) {
 TEST(RadioPool, ReceiversMaySendWhileAPacketIsBeingDelivered) {
   // A word travels along a star from hop to hop; each hearer sends on three copies of the very
   // bytes it was given, so the pool grows under the delivery.
-  Bed bed(Topology::star(6), {.radio = {.rate_bps = 8e9, .queue_packets_max = 1'000'000}});
+  Bed bed(Topology::star(6), {.radio = {.rate_bps = 8e9, .queue = {.packets_max = 1'000'000}}});
   bed.reaction = [&](const Packet& packet) {
     if (packet.bytes.size() <= 20) return;
     for (int copy = 0; copy < 3; ++copy) {
@@ -129,7 +132,7 @@ TEST(RadioPool, ARiderThatAReceiverKeepsStays) {
 TEST(RadioPool, ADroppedOrLostPacketLetsGoOfItsRider) {
   CountedRider lost, dropped;
   Bed bed(Topology::line(2),
-          {.radio = {.rate_bps = 8.0, .queue_packets_max = 1, .loss_probability = 1.0}});
+          {.radio = {.rate_bps = 8.0, .queue = {.packets_max = 1}, .loss = Loss::bernoulli(1.0)}});
   bed.at(1_s, [&] {
     bed.send(0, "x", no_agent, {}, RiderPtr(&lost));
     bed.send(0, "x", no_agent, {}, RiderPtr(&dropped));
@@ -179,9 +182,9 @@ TEST(RadioPool, ARadioDestroyedMidRunLetsGoAndCallsNobody) {
 
 std::uint64_t digest_of_a_run(std::uint64_t seed, std::size_t other_packets) {
   Bed bed(Topology::ring(5), {.radio = {.rate_bps = 2000.0,
-                                        .queue_packets_max = 4,
+                                        .queue = {.packets_max = 4},
                                         .latency = 7_ms,
-                                        .loss_probability = 0.2},
+                                        .loss = Loss::bernoulli(0.2)},
                               .seed = seed,
                               .end = Time::at(20_s),
                               .keep_messages = false});

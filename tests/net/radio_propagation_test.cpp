@@ -130,7 +130,7 @@ TEST(RadioPropagation, ARadioThatGoesTakesBackWhatIsOnTheWay) {
 
 TEST(RadioPropagation, LossesAreTheSameAtEverySpeed) {
   const auto lost = [](double m_per_s, bool timed) {
-    Bed bed(spread(), {.radio = {.loss_probability = 0.4, .propagation_m_per_s = m_per_s}});
+    Bed bed(spread(), {.radio = {.loss = Loss::bernoulli(0.4), .propagation_m_per_s = m_per_s}});
     for (int n = 0; n < 200; ++n) {
       bed.at(100_ms * n, [&bed, timed, n] {
         const AgentId to = n % 7 == 0 ? 4 : n % 11 == 0 ? 3 : no_agent;

@@ -100,7 +100,7 @@ TEST(Radio, APacketSaysWhoWhatAndWhen) {
 }
 
 TEST(Radio, AFullQueueDropsWhatComes) {
-  Bed bed(Topology::star(3), {.radio = {.rate_bps = 8.0, .queue_packets_max = 2}});
+  Bed bed(Topology::star(3), {.radio = {.rate_bps = 8.0, .queue = {.packets_max = 2}}});
   std::vector<bool> found_room;
   bed.at(1_s, [&] {
     for (const char* text : {"a", "b", "c", "d"}) found_room.push_back(bed.send(0, text));
@@ -120,7 +120,8 @@ TEST(Radio, AFullQueueDropsWhatComes) {
 }
 
 TEST(Radio, APlaceIsFreeFromTheInstantTheLastBitLeft) {
-  Bed bed(Topology::line(2), {.radio = {.rate_bps = 8.0, .queue_packets_max = 1, .latency = 10_s}});
+  Bed bed(Topology::line(2),
+          {.radio = {.rate_bps = 8.0, .queue = {.packets_max = 1}, .latency = 10_s}});
   std::vector<bool> found_room;
   bed.at(0_s, [&] { found_room.push_back(bed.send(0, "a")); });
   bed.at(1_s - 1_ns, [&] { found_room.push_back(bed.send(0, "b")); });
@@ -134,7 +135,7 @@ TEST(Radio, APlaceIsFreeFromTheInstantTheLastBitLeft) {
 TEST(Radio, TheQueueNeverHoldsMoreThanItsBound) {
   // Bursts of 0 … 12 one-second packets every 3 s, against a queue kept by hand.
   constexpr std::size_t bound = 7;
-  Bed bed(Topology::line(2), {.radio = {.rate_bps = 8.0, .queue_packets_max = bound}});
+  Bed bed(Topology::line(2), {.radio = {.rate_bps = 8.0, .queue = {.packets_max = bound}}});
   std::vector<std::int64_t> ends_s;
   std::uint64_t dropped = 0;
   for (int burst = 0; burst < 60; ++burst) {
@@ -155,7 +156,7 @@ TEST(Radio, TheQueueNeverHoldsMoreThanItsBound) {
 }
 
 TEST(Radio, AQueueThatGrowsKeepsItsOrder) {
-  Bed bed(Topology::line(2), {.radio = {.rate_bps = 8.0, .queue_packets_max = 10}});
+  Bed bed(Topology::line(2), {.radio = {.rate_bps = 8.0, .queue = {.packets_max = 10}}});
   int fitted = 0;
   const auto fill = [&] {
     fitted = 0;
@@ -229,13 +230,15 @@ TEST(Radio, OptionsOutsideTheirRangeAreNamed) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(message({.rate_bps = -5.0}), "radio: rate_bps must be positive and finite, not -5");
   EXPECT_THAT(message({.rate_bps = nan}), HasSubstr("rate_bps"));
-  EXPECT_EQ(message({.queue_packets_max = 0}),
+  EXPECT_EQ(message({.queue = {.packets_max = 0}}),
             "radio: queue_packets_max must be at least 1, not 0");
   EXPECT_EQ(message({.latency = -1_s}), "radio: latency_s must be at least 0, not -1");
-  EXPECT_EQ(message({.loss_probability = 1.5}),
-            "radio: loss_probability must be in [0, 1], not 1.5");
-  EXPECT_THAT(message({.loss_probability = nan}), HasSubstr("loss_probability"));
-  EXPECT_EQ(message({.loss_probability = 1.0}), "nothing thrown");
+  EXPECT_EQ(message({.mtu_bytes = 0}), "radio: mtu_bytes must be at least 1, not 0");
+  EXPECT_EQ(message({.queue = {.wait_max = 0_s}}),
+            "radio: queue_wait_max_s must be greater than 0, not 0");
+  EXPECT_EQ(message({.access = {.sharing = Sharing::tdma}}),
+            "radio: slot_s must be greater than 0, not 0");
+  EXPECT_EQ(message({.loss = Loss::bernoulli(1.0)}), "nothing thrown");
 }
 
 }  // namespace

@@ -90,6 +90,36 @@ TEST(Topology, NamedGraphsJoinWhomTheyShould) {
   }
 }
 
+TEST(Topology, ABinaryTreeJoinsEachWithTheHalfOfItsNumber) {
+  for (int n = 1; n <= 20; ++n) {
+    const auto parent = [](AgentId a) { return a == 0 ? -1 : (a + 1) / 2 - 1; };
+    EXPECT_EQ(links_of(Topology::binary_tree(n)), expected_links(n, [&](AgentId a, AgentId b) {
+                return parent(a) == b || parent(b) == a;
+              }));
+  }
+}
+
+TEST(Topology, AGridJoinsPlacesThatAreOneStepApart) {
+  for (int n = 1; n <= 13; ++n) {
+    for (int columns = 1; columns <= n; ++columns) {
+      SCOPED_TRACE(std::to_string(n) + " in " + std::to_string(columns));
+      const Topology grid = Topology::grid(n, columns);
+      EXPECT_EQ(links_of(grid), expected_links(n, [columns](AgentId a, AgentId b) {
+                  const int across = std::abs(a % columns - b % columns);
+                  const int down = std::abs(a / columns - b / columns);
+                  return across + down == 1;
+                }));
+      EXPECT_TRUE(grid.is_connected());
+    }
+  }
+}
+
+TEST(Topology, AGridHasNoMoreColumnsThanAgents) {
+  EXPECT_EQ(message_of<InputError>([] { Topology::grid(4, 5); }),
+            "a grid of 4 agents has 1 … 4 columns, not 5");
+  EXPECT_THROW(Topology::grid(4, 0), InputError);
+}
+
 TEST(Topology, SmallRingsHaveNoDoubleEdge) {
   EXPECT_EQ(Topology::ring(1).links(), 0u);
   EXPECT_EQ(Topology::ring(2).links(), 2u);
@@ -133,6 +163,10 @@ TEST(Topology, KnowsATree) {
   EXPECT_TRUE(Topology::line(1).is_tree());
   EXPECT_TRUE(Topology::line(5).is_tree());
   EXPECT_TRUE(Topology::star(5).is_tree());
+  for (int n = 1; n <= 33; ++n) EXPECT_TRUE(Topology::binary_tree(n).is_tree()) << n;
+  EXPECT_TRUE(Topology::grid(7, 1).is_tree());
+  EXPECT_TRUE(Topology::grid(7, 7).is_tree());
+  EXPECT_FALSE(Topology::grid(7, 3).is_tree());
   EXPECT_TRUE(Topology::ring(2).is_tree());
   EXPECT_FALSE(Topology::ring(3).is_tree());
   EXPECT_FALSE(Topology::full(4).is_tree());
@@ -140,6 +174,14 @@ TEST(Topology, KnowsATree) {
   EXPECT_FALSE(Topology::edges(4, apart).is_tree());
   const std::vector<Pair> triangle_and_one{{0, 1}, {1, 2}, {2, 0}};  // n − 1 edges, not connected
   EXPECT_FALSE(Topology::edges(4, triangle_and_one).is_tree());
+}
+
+TEST(Topology, KnowsWhetherItIsInOnePiece) {
+  EXPECT_TRUE(Topology::line(1).is_connected());
+  EXPECT_TRUE(Topology::full(4).is_connected());
+  const std::vector<Pair> apart{{0, 1}, {2, 3}};
+  EXPECT_FALSE(Topology::edges(4, apart).is_connected());
+  EXPECT_FALSE(Topology::edges(2, {}).is_connected());
 }
 
 TEST(Topology, BadEdgesAreNamed) {

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include "scenarios/channel.hpp"
+#include "scenarios/links.hpp"
 #include "temp_files.hpp"
 
 namespace hearsay {
@@ -52,6 +54,14 @@ std::string mutated(std::string text, Dice& dice) {
                                                 "[[agents]]\n",
                                                 "[world.log]\n",
                                                 "edges = [[0, 9]]\n",
+                                                "[[radio.outages]]\n",
+                                                "[[radio.partitions]]\n",
+                                                "[radio.rotation]\n",
+                                                "groups = [[0, 1], [2, 3]]\n",
+                                                "topology = \"grid\"\n",
+                                                "a,b",
+                                                "up",
+                                                "\r\n",
                                                 "\xff",
                                                 "\xc3",
                                                 "#"};
@@ -101,6 +111,85 @@ TEST_F(Fuzz, AScenarioIsReadOrRefused) {
   Dice dice;
   for (int i = 0; i < 2000; ++i) {
     attempt(mutated(ring, dice), [] { canonical_text(load_scenario("f.toml", {}, {})); });
+  }
+  EXPECT_GT(read, 20);
+  EXPECT_GT(refused, 500);
+}
+
+TEST_F(Fuzz, AChannelIsReadAndCanBeBuiltOrIsRefused) {
+  const std::string channel = R"(duration_s = 9
+[radio]
+topology = "by-position"
+propagation = { model = "log-distance", exponent = 2, shadowing_sigma_db = 4, range_m = 90 }
+loss = { model = "gilbert-elliott", probability = 0.5, mean_burst = 5 }
+jammers = [{ position_m = [1, 2], power_dbm = 9, from_s = 1, period_s = 3, duty = 0.5 }]
+[[agents]]
+count = 3
+circle = { radius_m = 9 }
+[[dropouts]]
+agents = [0, "estimator1"]
+kind = "reboot"
+mean_up_s = 9
+mean_down_s = 1
+)";
+  Dice dice;
+  for (int i = 0; i < 2000; ++i) {
+    attempt(mutated(channel, dice), [] {
+      const Scenario s = load_scenario("f.toml", {}, {});
+      EXPECT_NO_THROW(loss_of(s.radio.loss));
+      EXPECT_NO_THROW(propagation_of(s.radio));
+      EXPECT_NO_THROW(jammers_of(s.radio));
+      EXPECT_NO_THROW(dropouts_of(s, 1, Time::at(9_s)).next(1));
+    });
+  }
+  EXPECT_GT(read, 20);
+  EXPECT_GT(refused, 500);
+}
+
+TEST_F(Fuzz, AScenarioWithLinksThatChangeIsReadOrRefused) {
+  const std::string changing = R"(duration_s = 60
+[radio]
+topology = "small-world"
+mean_degree = 2
+rewire_probability = 0.5
+[[radio.outages]]
+links = [["a0", 1], [2, 3]]
+down_s = 1.5
+[[radio.partitions]]
+from_s = 10
+until_s = 20
+groups = [["a0", "a1"], [2, 3]]
+[radio.rotation]
+period_s = 4
+groups = [[0], [1], [2, 3]]
+[[agents]]
+name = "a"
+count = 4
+)";
+  Dice dice;
+  for (int i = 0; i < 1500; ++i) {
+    attempt(mutated(changing, dice), [] {
+      const Scenario scenario = load_scenario("f.toml", {}, {});
+      canonical_text(scenario);
+      if (scenario.agent_count() < 100) make_link_plan(scenario, agent_positions(scenario), 1);
+    });
+  }
+  EXPECT_GT(read, 20);
+  EXPECT_GT(refused, 500);
+}
+
+TEST_F(Fuzz, AContactTraceIsReadOrRefused) {
+  write("scenario.toml",
+        "duration_s = 9\nradio = { topology = \"contacts\", contacts = \"f.toml\" }\n"
+        "[[agents]]\nname = \"a\"\ncount = 4\n");
+  const std::string trace =
+      "t_s,a,b,state\n0,a0,a1,up\n1.5,1,0,down\n# later\n2,\"a2\",3,up\n2,0,1,up\n4e1,3,2,down\n";
+  Dice dice;
+  for (int i = 0; i < 3000; ++i) {
+    attempt(mutated(trace, dice), [] {
+      const Scenario scenario = load_scenario("scenario.toml", {}, {});
+      make_link_plan(scenario, agent_positions(scenario), 1);
+    });
   }
   EXPECT_GT(read, 20);
   EXPECT_GT(refused, 500);

@@ -140,7 +140,8 @@ TEST_F(Loader, AnUnknownKeyIsNamedWithTheNearestKnownOne) {
   EXPECT_EQ(error_with("fusion", "fusoin"),
             "s.toml:15: unknown key 'fusoin' in [agents[0].estimator]; did you mean 'fusion'?");
   EXPECT_EQ(error_with("probability", "chance"),
-            "s.toml:10: unknown key 'chance' in [radio.loss]; allowed: model, probability");
+            "s.toml:10: unknown key 'chance' in [radio.loss]; allowed: model, probability, links, "
+            "mean_burst, good_to_bad, bad_to_good, loss_good, loss_bad");
 }
 
 TEST_F(Loader, AWrongTypeSaysWhatWasExpectedAndFound) {
@@ -197,10 +198,11 @@ TEST_F(Loader, NumbersThatAreNoneAreRefused) {
 TEST_F(Loader, AnUnknownChoiceIsAnsweredWithTheAllowedOnes) {
   EXPECT_EQ(error_with("ci-det", "ci-dett"),
             "s.toml:15: agents[0].estimator.fusion = \"ci-dett\": unknown; allowed: none, naive, "
-            "channel, channel-robust, ci-det, ci-trace; did you mean 'ci-det'?");
+            "local-update, channel, channel-robust, ci-det, ci-trace; did you mean 'ci-det'?");
   EXPECT_EQ(error_with("\"ring\"", "\"moebius\""),
             "s.toml:8: radio.topology = \"moebius\": unknown; allowed: line, ring, star, full, "
-            "edges, disk");
+            "binary-tree, grid, erdos-renyi, small-world, random-geometric, edges, contacts, disk, "
+            "by-position");
   write("s.toml", ring);
   KnownNames names;
   names.metrics = {"kl_to_central_nats", "neess"};
@@ -295,8 +297,8 @@ TEST_F(Loader, APropagationNeedsASpeedAndADisk) {
     return error_with("\"ring\"", "\"ring\"\npropagation_m_per_s = " + value);
   };
   EXPECT_EQ(with("3e8"),
-            "s.toml:9: radio.propagation_m_per_s: only for topology = \"disk\", which knows how "
-            "long links are; found \"ring\"");
+            "s.toml:9: radio.propagation_m_per_s: only for topology = \"disk\", \"by-position\" or "
+            "\"random-geometric\", which know how long links are; found \"ring\"");
   EXPECT_EQ(with("0"), "s.toml:9: radio.propagation_m_per_s = 0: must be greater than 0");
   EXPECT_EQ(with("-3e8"), "s.toml:9: radio.propagation_m_per_s = -3e+08: must be greater than 0");
   EXPECT_EQ(with("inf"), "s.toml:9: radio.propagation_m_per_s = inf: must be a finite number");

@@ -90,9 +90,9 @@ TEST_F(Overrides, AKeyThatIsNotInTheSchemaIsRefused) {
   EXPECT_EQ(error({"loss.probability=1"}),
             "--set loss.probability=1: unknown key 'loss.probability'; did you mean "
             "'radio.loss.probability'?");
-  EXPECT_EQ(error({"radio.loss.burst=1"}),
-            "--set radio.loss.burst=1: unknown key 'radio.loss.burst'; allowed in [radio.loss]: "
-            "model, probability");
+  EXPECT_EQ(error({"radio.loss.chance=1"}),
+            "--set radio.loss.chance=1: unknown key 'radio.loss.chance'; allowed in [radio.loss]: "
+            "model, probability, links, mean_burst, good_to_bad, bad_to_good, loss_good, loss_bad");
   EXPECT_EQ(error({"seed.x=1"}), "--set seed.x=1: unknown key 'seed.x'; 'seed' is not a table");
   EXPECT_EQ(error({"radio[0].rate_bps=1"}),
             "--set radio[0].rate_bps=1: unknown key 'radio[0].rate_bps'; 'radio' takes no number "

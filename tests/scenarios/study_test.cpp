@@ -164,8 +164,11 @@ TEST_F(StudyLoader, AnAxisNeedsAKeyOfTheSchema) {
             "'radio.loss.probability'?");
   EXPECT_EQ(error("[axes]\nx = { points = [{ label = 1, set = { radio.rate = 1 } }] }\n"),
             "s.study.toml:3: axis 'x': unknown key 'radio.rate'; allowed in [radio]: topology, "
-            "edges, range_m, rate_bps, header_bytes, queue_packets_max, latency_s, "
-            "propagation_m_per_s, loss");
+            "edges, range_m, columns, link_probability, mean_degree, rewire_probability, side_m, "
+            "contacts, outages, partitions, rotation, rate_bps, header_bytes, mtu_bytes, "
+            "queue_packets_max, queue_bytes_max, queue_policy, queue_wait_max_s, half_duplex, "
+            "sharing, acknowledgement, latency_s, propagation_m_per_s, jitter, loss, propagation, "
+            "jammers");
   EXPECT_EQ(error("[set]\n\"radio.latency\" = 1\n").substr(0, 48),
             "s.study.toml:3: unknown key 'radio.latency'; did");
   EXPECT_EQ(error("[axes]\nseed = { key = \"seed\", values = [1, 2] }\n"),

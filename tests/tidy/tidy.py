@@ -15,7 +15,7 @@ MAY_INCLUDE = {
     "sim/kernel": ["sim/math"],
     "sim/world": ["sim/kernel", "sim/math"],
     "sim/record": ["sim/kernel"],
-    "net": ["sim/kernel"],
+    "net": ["sim/kernel", "sim/math"],
     "filters": ["sim/math", "sim/kernel/error.hpp"],
     "agents": ["net", "filters", "sim/world", "sim/kernel", "sim/math"],
     "scenarios": ["agents", "net", "filters", "sim/world", "sim/kernel", "sim/math"],
@@ -30,7 +30,7 @@ THIRD_PARTIES = {
     "sim/record": ["SQLiteCpp/", "sqlite3.h", "xxhash.h", "fmt/"],
     "filters": ["Eigen/"],
     "agents": ["Eigen/"],
-    "scenarios": ["toml++/", "fmt/"],
+    "scenarios": ["toml++/", "boost/tokenizer.hpp", "fmt/"],
 }
 RUN_ROOMS = ["sim", "net", "filters", "agents", "scenarios"]
 # What may not stand in code that computes a run, and where it may all the same.

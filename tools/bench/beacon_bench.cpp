@@ -153,7 +153,7 @@ Outcome run_ours(const Layout& layout) {
   Simulation simulation({.seed = seed, .end = end, .record = {.digest = &digest}});
   Radio radio(simulation, layout.topology,
               {.rate_bps = rate_bps,
-               .loss_probability = loss_probability,
+               .loss = Loss::bernoulli(loss_probability),
                .propagation_m_per_s = light_m_per_s});
   for (AgentId a = 0; a < agents; ++a) {
     beacons.emplace_back(simulation, radio, a);

@@ -8,6 +8,7 @@
 
 #include "agents/metrics.hpp"
 #include "filters/gaussian/fusion.hpp"
+#include "scenarios/radio_models.hpp"
 #include "scenarios/schema.hpp"
 #include "tools/hearsay/share.hpp"
 #include "tools/hearsay/verbs.hpp"
@@ -55,16 +56,34 @@ Json agents(const Catalog& catalog) {
   return out;
 }
 
+Json key_of(const KeyInfo& key) {
+  return {{"name", key.path},          {"type", key.type},
+          {"unit", unit_of(key.path)}, {"default", key.default_value},
+          {"allowed", key.allowed},    {"meaning", key.meaning}};
+}
+
 /// The keys of scenario files below `prefix`.
 Json keys(const std::string& prefix) {
   Json out = Json::array();
   for (const KeyInfo& key : schema_keys()) {
-    if (!key.path.starts_with(prefix)) continue;
-    out.push_back({{"name", key.path},
-                   {"type", key.type},
-                   {"default", key.default_value},
-                   {"allowed", key.allowed},
-                   {"meaning", key.meaning}});
+    if (key.path.starts_with(prefix)) out.push_back(key_of(key));
+  }
+  return out;
+}
+
+Json radios() {
+  Json out = Json::array();
+  for (const RadioModelInfo& model : radio_models()) {
+    const std::string chosen =
+        model.chosen_by.empty() ? "" : model.chosen_by + " = \"" + model.name + "\"";
+    Json parameter_list = Json::array();
+    for (const KeyInfo& key : parameters(model)) parameter_list.push_back(key_of(key));
+    out.push_back({{"name", model.name},
+                   {"part", model.part},
+                   {"chosen by", chosen},
+                   {"meaning", model.meaning},
+                   {"parameters", parameter_list},
+                   {"source", model.source}});
   }
   return out;
 }
@@ -86,13 +105,26 @@ Json scenarios() {
   return out;
 }
 
+/// A parameter on one line: "radio.latency_s: number, s, ≥ 0, default 0.0: from the …".
+std::string line_of(const Json& parameter) {
+  const auto part = [&](const char* key, const char* before) {
+    const auto text = parameter[key].get<std::string>();
+    return text.empty() ? text : before + text;
+  };
+  return part("name", "") + part("type", ": ") + part("unit", ", ") + part("allowed", ", ") +
+         part("default", ", default ") + part("meaning", ": ");
+}
+
 void print(const std::string& title, const Json& rows) {
   fmt::print("{}\n", title);
   for (const Json& row : rows) {
     fmt::print("  {}\n", row["name"].get<std::string>());
     for (const auto& [key, value] : row.items()) {
-      if (key == "name" || value.get<std::string>().empty()) continue;
-      fmt::print("      {}: {}\n", key, value.get<std::string>());
+      if (value.is_array()) {
+        for (const Json& parameter : value) fmt::print("      {}\n", line_of(parameter));
+      } else if (key != "name" && !value.get<std::string>().empty()) {
+        fmt::print("      {}: {}\n", key, value.get<std::string>());
+      }
     }
   }
   fmt::print("\n");
@@ -103,7 +135,7 @@ void print(const std::string& title, const Json& rows) {
 int list(const ListVerb& verb, const Catalog& catalog) {
   const std::vector<std::pair<std::string, std::function<Json()>>> topics = {
       {"rules", rules},
-      {"radios", [] { return keys("radio."); }},
+      {"radios", radios},
       {"sensors", [] { return keys("agents.sensor."); }},
       {"agents", [&] { return agents(catalog); }},
       {"metrics", [&] { return metrics_list(catalog); }},

@@ -24,9 +24,13 @@ struct Character {
   bool conservative;  ///< under any correlation, if both beliefs are
 };
 constexpr Character characters[] = {
-    {Rule::none, true, false, true},     {Rule::naive, false, true, false},
-    {Rule::channel, false, true, false}, {Rule::channel_robust, false, true, false},
-    {Rule::ci_det, true, true, true},    {Rule::ci_trace, true, true, true},
+    {Rule::none, true, false, true},
+    {Rule::naive, false, true, false},
+    {Rule::local_update, false, true, false},
+    {Rule::channel, false, true, false},
+    {Rule::channel_robust, false, true, false},
+    {Rule::ci_det, true, true, true},
+    {Rule::ci_trace, true, true, true},
 };
 
 class EveryRule : public testing::TestWithParam<RuleInfo> {

@@ -51,6 +51,7 @@ TEST(FusionRules, CoefficientsAreThoseOfTheTable) {
   };
   expect(Rule::none, 1, 0, 0);
   expect(Rule::naive, 1, 1, 0);
+  expect(Rule::local_update, 1, 1, 0);
   expect(Rule::channel, 1, 1, 1);
   expect(Rule::channel_robust, 1, 1, 1);
   const double omega = intersect_det(first.omega, second.omega).omega;

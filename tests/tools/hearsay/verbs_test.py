@@ -103,7 +103,14 @@ class Verbs(Bed):
         for rule in rules:
             self.assertTrue(rule["assumes"] and rule["conservative"] and rule["source"])
         self.assertIn("rumour/rumour.study.toml", self.good("list", "scenarios"))
-        self.assertIn("radio.rate_bps", self.good("list", "radios"))
+        radios = self.good("list", "radios")
+        self.assertIn("radio.rate_bps: number, bit/s, > 0, default 1e+06: bits a second", radios)
+        self.assertIn('radio.loss.model = "gilbert-elliott"', radios)
+        models = json.loads(self.good("list", "radios", "--json"))["radios"]
+        bursts = next(m for m in models if m["name"] == "gilbert-elliott")
+        self.assertIn("Gilbert", bursts["source"])
+        units = {p["name"]: p["unit"] for p in bursts["parameters"]}
+        self.assertEqual(units["radio.loss.mean_burst"], "packets")
         self.assertIn("sigma_along_m", self.good("list", "sensors"))
         recorded = {name for (name,) in self.scalars()}
         listed = {m["name"] for m in json.loads(self.good("list", "metrics", "--json"))["metrics"]}

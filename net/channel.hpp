@@ -1,0 +1,140 @@
+// Who may hear whom, and what the way there does to a packet: graph or places, links that come and
+// go, propagation, loss, jammers, latency.
+//
+// Draws are keyed by (seed, link, number of the packet), so the same packets are lost under every
+// fusion rule, whatever it sends.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "net/link_draw.hpp"
+#include "net/link_states.hpp"
+#include "net/places.hpp"
+#include "net/radio_options.hpp"
+#include "net/topology.hpp"
+#include "net/transmission.hpp"
+#include "sim/kernel/simulation.hpp"
+
+namespace hearsay {
+
+/// Where radios are, or who is joined to whom.
+struct Reach {
+  /// Everybody who may ever hear a sender is its neighbour. Of moving radios: as many agents, no
+  /// links.
+  Topology topology;
+  std::vector<LinkChange> changes = {};  ///< links that come and go, as in LinkPlan
+  std::vector<Point> positions_m = {};   ///< of radios that stand, by agent; empty: not known
+  /// Of moving radios; its reach is that of the propagation. Not owned, outlives the radio.
+  /// Somebody else keeps it up to date.
+  Places* places = nullptr;
+};
+
+class Channel {
+ public:
+  /// `simulation` outlives this.
+  /// @throws InputError for options that need positions, without any.
+  Channel(Simulation& simulation, Reach reach, const RadioOptions& options);
+  ~Channel() { simulation_.cancel(change_); }
+  Channel(const Channel&) = delete;
+  Channel& operator=(const Channel&) = delete;
+
+  int agents() const { return topology_.agents(); }
+  const Topology& topology() const { return topology_; }
+  /// Who may hear `agent` now, by number. Valid until the next call.
+  std::span<const AgentId> neighbours(AgentId agent);
+  /// True if they may change over time.
+  bool neighbours_change() const { return places_ != nullptr || !changes_.empty(); }
+  /// True if who may hear a packet is known when it is handed over.
+  bool foreseen() const { return places_ == nullptr; }
+  /// Where `agent` is now. @throws BrokenInvariant if nobody knows.
+  Point position(AgentId agent) const;
+  /// Calls visit(from, to, number) for each link that was numbered, by from and to.
+  template <class Visit>
+  void visit_links(Visit visit) const {
+    for (const auto& [key, number] : numbers_) {
+      visit(static_cast<AgentId>(key >> 32), static_cast<AgentId>(key & UINT32_MAX), number);
+    }
+    if (places_) return;
+    for (AgentId from = 0; from < agents(); ++from) {
+      auto link = static_cast<std::uint32_t>(topology_.first_link(from));
+      for (const AgentId to : topology_.neighbours(from)) visit(from, to, link++);
+    }
+  }
+
+  /// Finds the route of a packet and uses up its draw on each link. With `draws` its fates are
+  /// those the channel gives it: delivered, lost or out_of_range.
+  void aim(Transmission& t, bool draws);
+  /// Draws the fate of an addressed packet that is repeated.
+  Fate repeat(Transmission& t);
+  /// Whether the acknowledgement of an addressed packet gets through.
+  bool acknowledgement_lost(const Transmission& t) const;
+  /// When the last bit has left: from now on its hearers are in order of arrival.
+  void launch(Transmission& t);
+  /// What else the channel makes of a packet that arrives at its i-th hearer now.
+  Fate on_arrival(const Transmission& t, std::size_t i) const {
+    return quiet_ ? Fate::delivered : fate_on_arrival(t, i);
+  }
+  /// How strong the i-th hearer hears a packet, and `to` a frame of `from`, now.
+  double power_dbm(const Transmission& t, std::size_t i) const {
+    return powers_ ? power_dbm(t.sender, t.route.hearer(i)) : 0.0;
+  }
+  double power_dbm(AgentId from, AgentId to) const;
+
+ private:
+  void order_arrivals();
+  void route(Transmission& t);
+  void route_moving(Transmission& t);
+  void draw_jitter(Transmission& t);
+  Duration way(double distance_m) const;
+  double distance_m(AgentId from, AgentId to) const;
+  std::uint32_t number(AgentId from, AgentId to);
+  PacketOnLink on_link(const Transmission& t, std::size_t i, std::uint64_t index) const;
+  LinkQuality quality(AgentId from, AgentId to, double interference_mw) const;
+  bool heard(const PacketOnLink& packet, const Transmission& t, double interference_mw) const;
+  Fate fate_on_arrival(const Transmission& t, std::size_t i) const;
+  void schedule_change();
+
+  Simulation& simulation_;
+  Topology topology_;
+  std::vector<LinkChange> changes_;
+  std::vector<Point> positions_m_;
+  Places* places_;
+  LinkStates states_;
+  EventId change_;  // of links, the next
+  Propagation propagation_;
+  Loss loss_;
+  Jammers jammers_;
+  Duration latency_;
+  JitterOptions jitter_;
+  double propagation_m_per_s_;
+  std::uint32_t mtu_bytes_;
+  std::uint32_t header_bytes_;
+  std::uint32_t answer_bytes_;
+  bool quiet_;                   // nothing happens to a packet on its way that is not drawn before
+  bool powers_;                  // are of interest
+  bool numbers_links_;           // although radios move
+  bool certain_;                 // who is in reach hears
+  bool keeps_numbers_;           // jammers make noise, so that the draws are needed again
+  std::size_t hearers_max_ = 1;  // of anybody's broadcast; an addressed packet has one
+  // The neighbours of each sender in order of arrival, rows as in the topology. Empty if the way
+  // takes no time: then they hear at once.
+  std::vector<Ear> ears_;
+  std::vector<LinkQuality> link_quality_;           // of radios that stand, unless certain
+  std::map<std::uint64_t, std::uint32_t> numbers_;  // of links of moving radios, by both ends
+  std::vector<std::uint64_t> link_packets_;         // packets without tick so far, a link
+  std::vector<std::uint64_t> link_launched_;        // with jitter: those that have left
+  std::vector<Time> link_arrival_;                  // in-order jitter: the last arrival, a link
+  struct Sorted {
+    Ear ear;
+    Fate fate;
+    std::uint64_t number;
+  };
+  std::vector<Sorted> sorting_;
+  std::vector<AgentId> neighbours_;
+};
+
+}  // namespace hearsay

@@ -1,0 +1,87 @@
+// What is on the air at each radio: who hears which frames now, and what they do to one another.
+//
+// A frame is on the air at all who can hear it from its first bit to its last. Two at one radio
+// collide, unless the stronger is stronger by the capture ratio and so survives. A radio that sends
+// hears nothing if it is half-duplex. Overlaps are judged by the times at the senders: the way is
+// short against a frame.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "net/packet.hpp"
+#include "sim/kernel/ids.hpp"
+
+namespace hearsay {
+
+/// Makes `fate` the graver of the two; see Fate for the order. Both are fates of what was sent.
+inline void worsen(Fate& fate, Fate other) {
+  constexpr auto gravity = [] {
+    std::array<std::uint8_t, fate_count> rank{};
+    std::uint8_t next = 0;
+    for (const Fate f :
+         {Fate::delivered, Fate::lost, Fate::collided, Fate::jammed, Fate::half_duplex,
+          Fate::out_of_range, Fate::receiver_down, Fate::sender_down}) {
+      rank[static_cast<std::size_t>(f)] = next++;
+    }
+    return rank;
+  }();
+  if (gravity[static_cast<std::size_t>(other)] > gravity[static_cast<std::size_t>(fate)]) {
+    fate = other;
+  }
+}
+
+/// Told when the air around a radio is taken and when it is free again.
+class AirListener {
+ public:
+  virtual ~AirListener() = default;
+  virtual void air_taken(AgentId radio) = 0;
+  /// `garbled`: something of what was heard since the air was taken could not be read.
+  virtual void air_free(AgentId radio, bool garbled) = 0;
+};
+
+class Receptions {
+ public:
+  struct Options {
+    bool half_duplex = true;
+    bool collisions = true;
+    /// A frame stronger than another by this ratio survives the overlap, in dB, ≥ 0. Infinite: none
+    /// does.
+    double capture_db = std::numeric_limits<double>::infinity();
+  };
+  /// `listener`, if not null, outlives this.
+  Receptions(int radios, const Options& options, AirListener* listener);
+
+  /// A frame begins at `hearer`. Until end() `fate` stays where it is and is made graver by what
+  /// happens to the frame there. `power_dbm` matters for capture alone.
+  void begin(AgentId hearer, Fate& fate, double power_dbm);
+  void end(AgentId hearer, const Fate& fate);
+  void begin_sending(AgentId radio);
+  void end_sending(AgentId radio);
+  bool sending(AgentId radio) const { return radios_[index(radio)].sending; }
+  /// True if it sends, or hears anything.
+  bool taken(AgentId radio) const { return taken(radios_[index(radio)]); }
+
+ private:
+  struct Frame {
+    Fate* fate;
+    double power_dbm;
+  };
+  struct Ears {
+    std::vector<Frame> frames;  // on the air here; their order does not matter
+    bool sending = false;
+    bool garbled = false;
+  };
+  static std::size_t index(AgentId radio) { return static_cast<std::size_t>(radio); }
+  static bool taken(const Ears& ears) { return ears.sending || !ears.frames.empty(); }
+  void maybe_free(AgentId radio);
+
+  Options options_;
+  AirListener* listener_;
+  std::vector<Ears> radios_;
+};
+
+}  // namespace hearsay

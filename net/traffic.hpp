@@ -1,0 +1,62 @@
+// What became of all packets: counts a sender and a link, and the proof that nothing is missing.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "net/packet.hpp"
+#include "sim/kernel/record.hpp"
+
+namespace hearsay {
+
+using FateCounts = std::array<std::uint64_t, fate_count>;
+
+/// Sums over a run, for one sender.
+struct alignas(64) SenderCounts {
+  std::uint64_t packets = 0;           ///< handed to the radio
+  std::uint64_t begun = 0;             ///< packets of which sending began
+  std::uint64_t frames = 0;            ///< frames of which sending began, repeated ones too
+  std::uint64_t bytes_sent = 0;        ///< of these frames, with headers, and of acknowledgements
+  std::uint64_t expected = 0;          ///< potential receivers of all packets, summed
+  std::uint64_t acknowledgements = 0;  ///< sent for others
+  FateCounts fates{};
+  Duration air_time;     ///< time the transmitter was busy
+  Duration queue_delay;  ///< from hand-over to the first bit, summed over `begun`
+};
+
+/// @throws BrokenInvariant, naming agent and numbers, unless the fates add up to what was expected.
+void require_balance(AgentId sender, const SenderCounts& counts);
+
+class Traffic {
+ public:
+  /// `record` outlives this.
+  Traffic(Record& record, int agents, bool count_links);
+
+  /// One fate of one packet; `row` has all but receiver and fate. `link` matters if links are
+  /// counted.
+  void settle(MessageRow& row, AgentId receiver, std::uint32_t link, Fate fate) {
+    const auto f = static_cast<std::size_t>(fate);
+    row.receiver = receiver;
+    row.fate = fate_names_[f];
+    record_.message(row);
+    ++senders_[static_cast<std::size_t>(row.sender)].fates[f];
+    if (count_links_) count(link, f);
+  }
+  SenderCounts& sender(AgentId agent) { return senders_[static_cast<std::size_t>(agent)]; }
+  const SenderCounts& sender(AgentId agent) const {
+    return senders_[static_cast<std::size_t>(agent)];
+  }
+  /// By number of the link; empty unless links are counted.
+  const std::vector<FateCounts>& links() const { return links_; }
+
+ private:
+  void count(std::uint32_t link, std::size_t fate);
+  Record& record_;
+  std::array<NameId, fate_count> fate_names_{};
+  std::vector<SenderCounts> senders_;
+  std::vector<FateCounts> links_;
+  bool count_links_;
+};
+
+}  // namespace hearsay

@@ -1,0 +1,90 @@
+// What must fit together in the transmitter, and in how the channel is shared.
+#include <algorithm>
+#include <string>
+
+#include "filters/gaussian/codec.hpp"
+#include "scenarios/scenario_under_check.hpp"
+
+namespace hearsay {
+namespace {
+
+// The largest message of the built-in agents, in bytes; 0 if there are none.
+std::size_t message_bytes_max(const Scenario& scenario) {
+  const bool estimates = std::any_of(scenario.agents.begin(), scenario.agents.end(),
+                                     [](const AgentSpec& a) { return a.kind == "estimator"; });
+  if (!estimates || scenario.world.targets.empty()) return 0;
+  return gaussian::encoded_size(scenario.world.targets.size(), 2);
+}
+
+void check_queue(const ScenarioUnderCheck& file, const KeyPath& path) {
+  const RadioSpec& radio = file.scenario.radio;
+  if (!radio.queue_bytes_max) return;
+  const std::size_t message = message_bytes_max(file.scenario);
+  const auto mtu = static_cast<std::size_t>(radio.mtu_bytes.value_or(1 << 30));
+  const std::size_t frames = message == 0 ? 1 : (message - 1) / mtu + 1;
+  const std::size_t packet = message + frames * static_cast<std::size_t>(radio.header_bytes);
+  if (static_cast<std::size_t>(*radio.queue_bytes_max) >= packet) return;
+  file.fail(path["queue_bytes_max"], "smaller than one packet: a message of all beliefs takes " +
+                                         std::to_string(packet) + " bytes with headers");
+}
+
+void check_slots(const ScenarioUnderCheck& file, const KeyPath& path) {
+  const RadioSpec& radio = file.scenario.radio;
+  const SharingSpec& sharing = radio.sharing;
+  if (sharing.slot_s <= 0.0) {
+    file.fail(path["slot_s"], "model = \"" + sharing.model + "\" needs a slot above 0 s");
+  }
+  if (sharing.model == "carrier-sense") return;
+  if (!radio.mtu_bytes) {
+    file.fail(path["model"], "\"" + sharing.model +
+                                 "\" needs radio.mtu_bytes, which says how long a frame can be");
+  }
+  double frame_s = 8.0 * (*radio.mtu_bytes + radio.header_bytes) / radio.rate_bps;
+  const bool acknowledged =
+      std::any_of(file.scenario.agents.begin(), file.scenario.agents.end(),
+                  [](const AgentSpec& agent) { return agent.talk.acknowledged == "on"; });
+  if (acknowledged) {
+    frame_s +=
+        radio.acknowledgement.interframe_s + 8.0 * radio.acknowledgement.bytes / radio.rate_bps;
+  }
+  if (sharing.slot_s >= frame_s - 1e-9) return;
+  file.fail(path["slot_s"], "shorter than a frame, which takes " + to_toml(frame_s) + " s" +
+                                (acknowledged ? " with its acknowledgement" : ""));
+}
+
+}  // namespace
+
+void check_transmitter(ScenarioUnderCheck& file) {
+  const KeyPath top;
+  const KeyPath path = top["radio"];
+  const RadioSpec& radio = file.scenario.radio;
+  check_queue(file, path);
+  const KeyPath sharing_path = path["sharing"];
+  const SharingSpec& sharing = radio.sharing;
+  if (sharing.model == "none") {
+    if (sharing.slot_s > 0.0) {
+      file.fail(sharing_path["slot_s"], "without effect; set radio.sharing.model, too");
+    }
+    if (sharing.capture_db) {
+      file.fail(sharing_path["capture_db"],
+                "without effect: with sharing.model = \"none\" frames do not meet");
+    }
+  } else {
+    check_slots(file, sharing_path);
+  }
+  if (sharing.window_max < sharing.window_min) {
+    file.fail(sharing_path["window_max"],
+              "must not be below window_min (" + std::to_string(sharing.window_min) + ")");
+  }
+  if (radio.jitter.law == "none" && radio.jitter.spread_s > 0.0) {
+    file.fail(path["jitter"]["spread_s"], "without effect; set radio.jitter.law, too");
+  }
+  for (std::size_t i = 0; i < file.scenario.agents.size(); ++i) {
+    const TalkSpec& talk = file.scenario.agents[i].talk;
+    if (talk.acknowledged == "on" && talk.policy == "never") {
+      file.fail(top["agents"][i]["talk"]["acknowledged"], "without effect: this agent never talks");
+    }
+  }
+}
+
+}  // namespace hearsay

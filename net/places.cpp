@@ -24,6 +24,11 @@ void check(double value, bool zero_allowed, const char* name) {
   throw InputError(text.str());
 }
 
+int checked(int agents) {
+  if (agents >= 1 && agents <= agents_max) return agents;
+  throw InputError("places are for 1 … 10000000 agents, not " + std::to_string(agents));
+}
+
 std::uint16_t to_units(double part) {
   return static_cast<std::uint16_t>(std::clamp(part * units, 0.0, units - 1.0));
 }
@@ -36,16 +41,17 @@ struct Places::Look {
   float squared_half;  // of the circle, in units
 };
 
+struct Places::Cells {
+  std::int64_t first_column, last_column, first_row, last_row;
+};
+
 Places::Places(int agents, double reach_m, double slack_m)
-    : reach_m_(reach_m), slack_m_(slack_m), grid_(std::clamp(agents, 0, agents_max)) {
-  if (agents < 1 || agents > agents_max) {
-    throw InputError("places are for 1 … 10000000 agents, not " + std::to_string(agents));
-  }
+    : reach_m_(reach_m), slack_m_(slack_m), grid_(checked(agents)) {
   check(reach_m, false, "reach_m");
   check(slack_m, true, "slack_m");
   cell_m_ = std::max(reach_m + slack_m, cell_min_m);
   cells_per_m_ = 1.0 / cell_m_;
-  legs_.resize(static_cast<std::size_t>(agents));
+  legs_.assign(static_cast<std::size_t>(agents), {Leg{.begin = Time::never()}});
 }
 
 std::int64_t Places::cell_number(double coordinate_m) const {
@@ -74,13 +80,17 @@ Time Places::refresh(AgentId agent, Time now) {
   }
   grid_.put({part[0], part[1], agent}, cell[0], cell[1]);
   const double vx = leg.velocity_m_per_s[0], vy = leg.velocity_m_per_s[1];
-  const double span_ns = slack_m_ / std::sqrt(vx * vx + vy * vy) * 1e9;
+  const double speed_m_per_s = std::sqrt(vx * vx + vy * vy);
+  require(slack_m_ > 0.0 || speed_m_per_s == 0.0, "something moves among places without slack");
+  const double span_ns = slack_m_ / speed_m_per_s * 1e9;
   if (!(span_ns < static_cast<double>((leg.end - now).nanoseconds()))) return leg.end;
   return now + Duration::nanoseconds(std::max(static_cast<std::int64_t>(span_ns), std::int64_t{1}));
 }
 
 std::span<const Nearby> Places::near(AgentId agent, Time time) {
-  return look(at(agent, time), reach_m_, time, agent);
+  const Leg& own = leg(agent);
+  require(own.begin <= time && time <= own.end, "a look-up is not within the leg of its agent");
+  return look(own.at(time), reach_m_, time, agent);
 }
 
 std::span<const Nearby> Places::around(const Point& place_m, double reach_m, Time time) {
@@ -123,30 +133,40 @@ void Places::collect(const Look& look) {
     }
     return;
   }
-  const std::int64_t first_column = cell_number(look.place_m[0] - look.half_m);
-  const std::int64_t last_column = cell_number(look.place_m[0] + look.half_m);
-  const std::int64_t first_row = cell_number(look.place_m[1] - look.half_m);
-  const std::int64_t last_row = cell_number(look.place_m[1] + look.half_m);
-  for (std::int64_t v = PlaceGrid::tile_of(first_row); v <= PlaceGrid::tile_of(last_row); ++v) {
-    for (std::int64_t u = PlaceGrid::tile_of(first_column); u <= PlaceGrid::tile_of(last_column);
-         ++u) {
-      const PlaceGrid::Line* cells = grid_.tile(u, v);
-      if (cells == nullptr) continue;
-      const std::int64_t row_end = std::min(last_row - v * side, side - 1);
-      const std::int64_t column_end = std::min(last_column - u * side, side - 1);
-      for (std::int64_t row = std::max(first_row - v * side, std::int64_t{0}); row <= row_end;
-           ++row) {
-        const double y = look.place_m[1] * cells_per_m_ - static_cast<double>(v * side + row);
-        for (std::int64_t column = std::max(first_column - u * side, std::int64_t{0});
-             column <= column_end; ++column) {
-          const double x = look.place_m[0] * cells_per_m_ - static_cast<double>(u * side + column);
-          const PlaceGrid::Line* line = &cells[row * side + column];
-          for (;;) {
-            collect_from(look, *line, static_cast<float>(x * units), static_cast<float>(y * units));
-            if (line->next == PlaceGrid::none) break;
-            line = &grid_.line(line->next);
-          }
-        }
+  const Cells cells{
+      cell_number(look.place_m[0] - look.half_m), cell_number(look.place_m[0] + look.half_m),
+      cell_number(look.place_m[1] - look.half_m), cell_number(look.place_m[1] + look.half_m)};
+  for (std::int64_t v = PlaceGrid::tile_of(cells.first_row);
+       v <= PlaceGrid::tile_of(cells.last_row); ++v) {
+    for (std::int64_t u = PlaceGrid::tile_of(cells.first_column);
+         u <= PlaceGrid::tile_of(cells.last_column); ++u) {
+      const PlaceGrid::Line* tile = grid_.tile(u, v);
+      if (tile != nullptr) collect_from_tile(look, cells, tile, u * side, v * side);
+    }
+  }
+}
+
+void Places::collect_from_tile(const Look& look, const Cells& cells, const PlaceGrid::Line* tile,
+                               std::int64_t column, std::int64_t row) {
+  constexpr std::int64_t side = PlaceGrid::tile_side;
+  const std::int64_t first_i = std::max(cells.first_column - column, std::int64_t{0});
+  const std::int64_t last_i = std::min(cells.last_column - column, side - 1);
+  const std::int64_t first_j = std::max(cells.first_row - row, std::int64_t{0});
+  const std::int64_t last_j = std::min(cells.last_row - row, side - 1);
+  for (std::int64_t j = first_j; j <= last_j; ++j) {
+    for (std::int64_t i = first_i; i <= last_i; ++i) __builtin_prefetch(&tile[j * side + i]);
+  }
+  const double x = look.place_m[0] * cells_per_m_ - static_cast<double>(column);
+  const double y = look.place_m[1] * cells_per_m_ - static_cast<double>(row);
+  for (std::int64_t j = first_j; j <= last_j; ++j) {
+    const auto y_units = static_cast<float>((y - static_cast<double>(j)) * units);
+    for (std::int64_t i = first_i; i <= last_i; ++i) {
+      const auto x_units = static_cast<float>((x - static_cast<double>(i)) * units);
+      const PlaceGrid::Line* line = &tile[j * side + i];
+      collect_from(look, *line, x_units, y_units);
+      while (line->next != PlaceGrid::none) {
+        line = &grid_.line(line->next);
+        collect_from(look, *line, x_units, y_units);
       }
     }
   }

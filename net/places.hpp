@@ -32,14 +32,15 @@ class Places {
  public:
   /// For agents 0 … agents−1, none of which is anywhere yet. Look-ups are quickest at `reach_m`.
   /// With more slack agents are filed anew less often, and look-ups see more candidates: a tenth to
-  /// a half of the reach serves most; 0 if nobody moves.
+  /// a half of the reach serves most. It may be 0 if nobody moves in x and y.
   /// @throws InputError unless agents is 1 … 1e7, reach_m > 0 and slack_m ≥ 0, both finite.
   Places(int agents, double reach_m, double slack_m);
 
   /// From `now` on `agent` moves along `leg`, which has begun and is not over.
   /// @return the last time (> now) at which look-ups find it. By then it must be set() again, if
   /// its leg is over, or else at least refresh()ed.
-  /// @throws BrokenInvariant if it is not within ±1e13 m in x and y.
+  /// @throws BrokenInvariant if it is not within ±1e13 m in x and y, or moves and there is no
+  /// slack.
   Time set(AgentId agent, const Leg& leg, Time now);
   /// Files it where it is now. Return and errors as for set().
   Time refresh(AgentId agent, Time now);
@@ -65,9 +66,12 @@ class Places {
     Leg leg;
   };
   struct Look;
+  struct Cells;
   std::int64_t cell_number(double coordinate_m) const;
   std::span<const Nearby> look(const Point& place_m, double reach_m, Time time, AgentId except);
   void collect(const Look& look);
+  void collect_from_tile(const Look& look, const Cells& cells, const PlaceGrid::Line* tile,
+                         std::int64_t column, std::int64_t row);
   void collect_from(const Look& look, const PlaceGrid::Line& line, float x, float y);
   void sort_candidates();
 

@@ -1,0 +1,41 @@
+// Keeps a Places right while a run goes on: hands it leg after leg, and files agents anew in time.
+#pragma once
+
+#include "net/places.hpp"
+#include "sim/kernel/ids.hpp"
+#include "sim/kernel/leg.hpp"
+#include "sim/kernel/simulation.hpp"
+
+namespace hearsay {
+
+/// Knows how agents move.
+class PathSource {
+ public:
+  virtual ~PathSource() = default;
+  /// The next leg of `agent`, which begins where and when the one before it ends; the first begins
+  /// when the simulation stands at `now` or earlier. Not asked for after an endless leg.
+  virtual Leg next(AgentId agent, Time now) = 0;
+};
+
+/// One event an agent, in Phase::world, whenever its leg ends or its filing does; none for what
+/// stands still for ever. So everybody is in place when others look, at any instant.
+class Movement {
+ public:
+  /// Sets all agents of `places` at the simulation's now(). Legs that are over by then are passed
+  /// over. All three must outlive the simulation's run.
+  /// @throws BrokenInvariant, there or in the run, for legs that do not follow each other in time.
+  Movement(Simulation& simulation, Places& places, PathSource& paths);
+  Movement(const Movement&) = delete;
+  Movement& operator=(const Movement&) = delete;
+
+ private:
+  Leg leg_after(AgentId agent, const Leg& before);
+  void go_on(AgentId agent);
+  void wait(AgentId agent, Time until);
+
+  Simulation& simulation_;
+  Places& places_;
+  PathSource& paths_;
+};
+
+}  // namespace hearsay

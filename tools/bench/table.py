@@ -14,11 +14,14 @@ GOALS = {
     "bimodal/1000": None, "bimodal/100000": None, "bimodal/1000000": None,
     "process/10000": 1.2,
     "beacon/100": 1.2, "beacon/1000": 1.2, "beacon/10000": 1.2,
+    "moving/100": None, "moving/1000": None, "moving/10000": None, "moving/100000": 0.5,
+    "fading/100": None, "fading/1000": None, "fading/10000": None,
+    "sensing/100": None, "sensing/1000": None, "sensing/10000": None,
     "fuse/4": 3.0,
     "log": 1.0,
 }
 # Measured against another workload's floor: what a time-out an event costs beside none at all.
-FLOOR_OF = {"timeouts": "hold"}
+FLOOR_OF = {"timeouts": "hold", "moving": "beacon", "fading": "beacon", "sensing": "beacon"}
 RATES = ("items_per_second", "deliveries_per_s", "rows/s")
 
 

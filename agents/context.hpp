@@ -48,6 +48,8 @@ class Context {
   /// The draws that belong to the `count`-th thing of that name.
   Stream stream_at(std::string_view purpose, std::uint64_t count) const;
 
+  /// Where the agent is, exact at any time. @throws BrokenInvariant if the scenario does not say.
+  Point position() const { return radio_.position(id()); }
   /// False while the agent is down: it cannot look, talk or hear.
   bool up() const { return radio_.up(id()); }
   /// Whom a broadcast reaches now if nothing is lost, by number. Valid until anybody asks again.

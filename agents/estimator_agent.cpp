@@ -42,12 +42,18 @@ Process EstimatorAgent::look() {
       Stream draws = context().simulation().stream_at(
           Purpose("sensor noise"), Entity::sensor(context().id(), static_cast<std::uint32_t>(s)),
           count);
-      const gaussian::Belief information = options_.sensors[s].measure(draws);
+      const gaussian::Belief information = look_at(options_.sensors[s], draws);
       const int subject = static_cast<int>(s);
       estimator_.measured(subject, information, witness_.measured(subject, information));
     }
     next = next + options_.sensor_period;
   }
+}
+
+gaussian::Belief EstimatorAgent::look_at(const PositionSensor& sensor, Stream& draws) {
+  if (!options_.moves || !sensor.has_direction()) return sensor.measure(draws);
+  const Point place_m = context().position();
+  return sensor.moved_to({place_m[0], place_m[1]}).measure(draws);
 }
 
 Process EstimatorAgent::replay() {

@@ -29,6 +29,7 @@ class EstimatorAgent final : public Agent {
     int dimension = 2;
     /// One a subject: each looks at every `sensor_period` from `sensor_start` to `sensor_end`.
     std::vector<PositionSensor> sensors;
+    bool moves = false;  ///< sensors go with the agent
     Duration sensor_period = Duration::nanoseconds(1'000'000'000);
     Time sensor_start;
     Time sensor_end = Time::never();
@@ -47,6 +48,7 @@ class EstimatorAgent final : public Agent {
 
  private:
   Process look();
+  gaussian::Belief look_at(const PositionSensor& sensor, Stream& draws);
   Process replay();
   Process talk();
   void say(std::uint64_t tick);

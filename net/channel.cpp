@@ -36,6 +36,7 @@ Channel::Channel(Simulation& simulation, Reach reach, const RadioOptions& option
       changes_(std::move(reach.changes)),
       positions_m_(std::move(reach.positions_m)),
       places_(reach.places),
+      by_place_(reach.by_place),
       states_(topology_, changes_),
       propagation_(options.propagation),
       loss_(options.loss),
@@ -53,7 +54,9 @@ Channel::Channel(Simulation& simulation, Reach reach, const RadioOptions& option
       certain_(propagation_.certain()),
       noisy_(!jammers_.none() && propagation_.has_powers()) {
   require(topology_.links() < UINT32_MAX, "radio: more than 2^32 links");
-  const bool placed = places_ != nullptr || topology_.has_lengths();
+  require(!by_place_ || (places_ != nullptr && topology_.links() == 0),
+          "radio: hearing by place needs places, and a topology without links");
+  const bool placed = by_place_ || topology_.has_lengths();
   if (std::isfinite(propagation_m_per_s_) && !placed) {
     throw InputError("radio: propagation_m_per_s needs a topology with positions");
   }
@@ -67,8 +70,8 @@ Channel::Channel(Simulation& simulation, Reach reach, const RadioOptions& option
     hearers_max_ = std::max(hearers_max_, topology_.neighbours(a).size());
   }
   link_packets_.resize(topology_.links(), 0);
-  if (std::isfinite(propagation_m_per_s_) && !places_) order_arrivals();
-  if (!certain_ && !places_) {
+  if (std::isfinite(propagation_m_per_s_) && !by_place_) order_arrivals();
+  if (!certain_ && !by_place_) {
     for (AgentId a = 0; a < topology_.agents(); ++a) {
       for (const AgentId b : topology_.neighbours(a)) link_quality_.push_back(quality(a, b, 0.0));
     }
@@ -113,9 +116,9 @@ Point Channel::position(AgentId agent) const {
 }
 
 std::span<const AgentId> Channel::neighbours(AgentId agent) {
-  if (!places_ && changes_.empty()) return topology_.neighbours(agent);
+  if (!by_place_ && changes_.empty()) return topology_.neighbours(agent);
   neighbours_.clear();
-  if (places_) {
+  if (by_place_) {
     for (const Nearby& near : places_->near(agent, simulation_.now())) {
       neighbours_.push_back(near.agent);
     }
@@ -136,7 +139,7 @@ void Channel::route(Transmission& t) {
   t.route = Route{};
   t.way = Duration();
   t.aimed = true;
-  if (places_) return route_moving(t);
+  if (by_place_) return route_moving(t);
   const std::size_t first = topology_.first_link(t.sender);
   if (t.receiver == no_agent) {
     const std::span<const AgentId> neighbours = topology_.neighbours(t.sender);
@@ -182,7 +185,7 @@ void Channel::route_moving(Transmission& t) {
 }
 
 double Channel::distance_m(AgentId from, AgentId to) const {
-  if (!places_) {
+  if (!by_place_) {
     const std::int64_t link = topology_.link(from, to);
     if (link >= 0) return topology_.length_m(static_cast<std::size_t>(link));
   }
@@ -249,7 +252,7 @@ void Channel::aim(Transmission& t, bool draws) {
 }
 
 Fate Channel::repeat(Transmission& t) {
-  if (places_) route(t);
+  if (by_place_) route(t);
   if (!t.route.reaches) return Fate::out_of_range;
   PacketOnLink packet = on_link(t, 0, t.index);
   packet.repetition = static_cast<std::uint32_t>(t.repetition);

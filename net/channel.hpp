@@ -23,8 +23,7 @@ namespace hearsay {
 
 /// Where radios are, or who is joined to whom.
 struct Reach {
-  /// Everybody who may ever hear a sender is its neighbour. Of moving radios: as many agents, no
-  /// links.
+  /// Everybody who may ever hear a sender is its neighbour. By place: as many agents, no links.
   Topology topology;
   std::vector<LinkChange> changes = {};  ///< links that come and go, as in LinkPlan
   std::vector<Point> positions_m = {};   ///< of radios that stand, by agent; empty: not known
@@ -47,9 +46,9 @@ class Channel {
   /// Who may hear `agent` now, by number. Valid until the next call.
   std::span<const AgentId> neighbours(AgentId agent);
   /// True if they may change over time.
-  bool neighbours_change() const { return places_ != nullptr || !changes_.empty(); }
+  bool neighbours_change() const { return by_place_ || !changes_.empty(); }
   /// True if who may hear a packet is known when it is handed over.
-  bool foreseen() const { return places_ == nullptr; }
+  bool foreseen() const { return !by_place_; }
   /// Where `agent` is now. @throws BrokenInvariant if nobody knows.
   Point position(AgentId agent) const;
   /// Calls visit(from, to, number) for each link that was numbered, by from and to.
@@ -58,7 +57,7 @@ class Channel {
     for (const auto& [key, number] : numbers_) {
       visit(static_cast<AgentId>(key >> 32), static_cast<AgentId>(key & UINT32_MAX), number);
     }
-    if (places_) return;
+    if (by_place_) return;
     for (AgentId from = 0; from < agents(); ++from) {
       auto link = static_cast<std::uint32_t>(topology_.first_link(from));
       for (const AgentId to : topology_.neighbours(from)) visit(from, to, link++);
@@ -103,6 +102,7 @@ class Channel {
   std::vector<LinkChange> changes_;
   std::vector<Point> positions_m_;
   Places* places_;
+  bool by_place_;
   LinkStates states_;
   EventId change_;  // of links, the next
   Propagation propagation_;

@@ -1,21 +1,13 @@
 // Keeps a Places right while a run goes on: hands it leg after leg, and files agents anew in time.
 #pragma once
 
+#include "net/path_source.hpp"
 #include "net/places.hpp"
 #include "sim/kernel/ids.hpp"
 #include "sim/kernel/leg.hpp"
 #include "sim/kernel/simulation.hpp"
 
 namespace hearsay {
-
-/// Knows how agents move.
-class PathSource {
- public:
-  virtual ~PathSource() = default;
-  /// The next leg of `agent`, which begins where and when the one before it ends; the first begins
-  /// when the simulation stands at `now` or earlier. Not asked for after an endless leg.
-  virtual Leg next(AgentId agent, Time now) = 0;
-};
 
 /// One event an agent, in Phase::world, whenever its leg ends or its filing does; none for what
 /// stands still for ever. So everybody is in place when others look, at any instant.

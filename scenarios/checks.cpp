@@ -22,6 +22,7 @@ class Checker {
     for (std::size_t i = 0; i < s_.agents.size(); ++i) {
       check_agent(s_.agents[i], agents_[i]);
     }
+    check_motion(file_);
     check_radio(file_);
   }
 
@@ -146,8 +147,9 @@ void Checker::check_position_sensor(const AgentSpec& agent, const KeyPath& path)
   if (!sensor.sigma_m && !along) {
     fail(path, "kind \"position\" needs sigma_m, or sigma_along_m and sigma_across_m");
   }
-  if (along && !placed(agent)) {
-    fail(path["sigma_along_m"], "needs to know where the agent stands: position_m or circle");
+  if (along && !has_place(agent)) {
+    fail(path["sigma_along_m"],
+         "needs to know where the agent stands: position_m, circle or motion");
   }
 }
 

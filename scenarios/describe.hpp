@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "filters/gaussian/fusion.hpp"
+#include "scenarios/describe_motion.hpp"
 #include "scenarios/describe_radio.hpp"
 #include "scenarios/loader.hpp"
 #include "scenarios/reading.hpp"
@@ -99,6 +100,7 @@ void describe(V& v, AgentSpec& s) {
   v.field("count", s.count, count, "how many such agents");
   v.field("position_m", s.position_m, anything(), "where it stands: 2 coordinates");
   v.table("circle", s.circle, "the entry's agents stand on a circle, instead of position_m");
+  v.table("motion", s.motion, "how it moves; default: it stands still");
   v.table("sensor", s.sensor, "what it measures");
   v.table("estimator", s.estimator, "what it believes");
   v.table("talk", s.talk, "what it says when");

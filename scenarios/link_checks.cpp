@@ -7,6 +7,7 @@
 #include "net/random_graphs.hpp"
 #include "scenarios/contacts.hpp"
 #include "scenarios/links.hpp"
+#include "scenarios/motion.hpp"
 #include "scenarios/scenario_under_check.hpp"
 
 namespace hearsay {
@@ -18,6 +19,7 @@ class LinkChecker {
 
   void all() {
     check_keys();
+    check_motion();
     check_sizes();
     check_places();
     resolve_pairs(path_["edges"], radio_.edges);
@@ -42,6 +44,7 @@ class LinkChecker {
 
  private:
   void check_keys() const;
+  void check_motion() const;
   void check_sizes() const;
   void check_places() const;
   void resolve_pairs(const KeyPath& path, std::vector<std::array<int, 2>>& pairs) const;
@@ -90,6 +93,19 @@ void LinkChecker::check_keys() const {
   }
 }
 
+// Who hears whom among agents that move follows from where they are.
+void LinkChecker::check_motion() const {
+  const bool by_place = radio_.topology == "disk" || radio_.topology == "by-position";
+  if (!by_place || !has_motion(file_.scenario)) return;
+  const char* given = !radio_.outages.empty()      ? "outages"
+                      : !radio_.partitions.empty() ? "partitions"
+                      : radio_.rotation            ? "rotation"
+                                                   : nullptr;
+  if (given == nullptr) return;
+  file_.fail(path_[given], "not for agents that move with topology = \"" + radio_.topology +
+                               "\": their links come and go by where they are");
+}
+
 void LinkChecker::check_sizes() const {
   const int agents = file_.scenario.agent_count();
   const std::string all = std::to_string(agents) + ", the number of agents";
@@ -123,9 +139,9 @@ void LinkChecker::check_places() const {
                  "not with topology = \"random-geometric\", which draws where agents stand; for "
                  "places of your own take \"disk\"");
     }
-    if (placed(agent) || drawn) continue;
+    if (has_place(agent) || drawn) continue;
     file_.fail(agents[i],
-               "topology = \"disk\" needs to know where it stands: position_m or circle");
+               "topology = \"disk\" needs to know where it stands: position_m, circle or motion");
   }
 }
 

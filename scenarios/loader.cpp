@@ -148,6 +148,12 @@ void resolve_paths(const TomlNode& root, const std::string& file, Scenario& scen
   if (!scenario.radio.contacts.empty()) {
     resolve_path(root.find("radio")->find("contacts"), file, scenario.radio.contacts);
   }
+  for (std::size_t i = 0; i < scenario.agents.size(); ++i) {
+    std::optional<MotionSpec>& motion = scenario.agents[i].motion;
+    if (!motion || !motion->file) continue;
+    const TomlNode* node = root.find("agents")->children[i].find("motion");
+    resolve_path(node->find("file"), file, *motion->file);
+  }
 }
 
 }  // namespace

@@ -21,8 +21,9 @@ void check_radio(ScenarioUnderCheck& file) {
   if (!placed_agents && radio.jammers.empty()) return;
   const std::string who = placed_agents ? "topology = \"" + radio.topology + "\"" : "a jammer";
   for (std::size_t i = 0; i < file.scenario.agents.size(); ++i) {
-    if (placed(file.scenario.agents[i])) continue;
-    file.fail(top["agents"][i], who + " needs to know where it stands: position_m or circle");
+    if (has_place(file.scenario.agents[i])) continue;
+    file.fail(top["agents"][i],
+              who + " needs to know where it stands: position_m, circle or motion");
   }
 }
 

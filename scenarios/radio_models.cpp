@@ -224,6 +224,32 @@ Models faults() {
        "signal-to-interference-and-noise ratio"}};
 }
 
+Models motions() {
+  const std::string by = "agents.motion.kind";
+  const auto keys = [](std::vector<std::string> names) {
+    names.emplace_back("altitude_m");
+    for (std::string& name : names) name.insert(0, "agents.motion.");
+    return names;
+  };
+  return {{"motion", "hover", by, "stays where it is", keys({}), ""},
+          {"motion", "waypoints", by, "straight from point to point, with a pause at each",
+           keys({"points_m", "speed_m_per_s", "pause_s", "repeat"}), ""},
+          {"motion", "lawn-mower", by, "lanes to and fro over a rectangle",
+           keys({"area_m", "lane_spacing_m", "speed_m_per_s", "repeat"}), ""},
+          {"motion", "random-waypoint", by,
+           "straight to a place drawn evenly from a rectangle, a pause, and so on; from the "
+           "stationary law",
+           keys({"area_m", "speed_min_m_per_s", "speed_max_m_per_s", "pause_min_s", "pause_max_s"}),
+           "W. Navidi, T. Camp, IEEE Trans. Mobile Computing 3(1), 2004"},
+          {"motion", "gauss-markov", by,
+           "speed and direction forget their last values by alpha at each update; walls reflect",
+           keys({"area_m", "speed_mean_m_per_s", "speed_sigma_m_per_s", "direction_mean_rad",
+                 "direction_sigma_rad", "alpha", "update_period_s"}),
+           "T. Camp, J. Boleng, V. Davies, Wireless Comm. Mobile Computing 2(5), 2002"},
+          {"motion", "track", by, "straight between places at times from a CSV file",
+           keys({"file"}), ""}};
+}
+
 }  // namespace
 
 const std::vector<RadioModelInfo>& radio_models() {
@@ -231,7 +257,7 @@ const std::vector<RadioModelInfo>& radio_models() {
     Models models;
     // A new part of the network, or a new model of a part, is added here and shown everywhere.
     for (const auto part :
-         {transmitters, sharings, latencies, propagations, losses, topologies, faults}) {
+         {transmitters, sharings, latencies, propagations, losses, topologies, faults, motions}) {
       Models of_part = part();
       std::move(of_part.begin(), of_part.end(), std::back_inserter(models));
     }

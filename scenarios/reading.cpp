@@ -257,6 +257,21 @@ void read(const TomlNode& node, const KeyPath& path, const Allowed& allowed,
 }
 
 void read(const TomlNode& node, const KeyPath& path, const Allowed& allowed,
+          std::vector<std::array<double, 2>>& value) {
+  expect_array(node, path, "an array of points, as [[0, 0], [100, 50]]");
+  value.assign(node.children.size(), {});
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    const TomlNode& point = node.children[i];
+    const KeyPath point_path = path[i];
+    expect_array(point, point_path, "a point, as [100, 50]");
+    if (point.children.size() != 2) reject(point, point_path, "must have 2 coordinates");
+    for (std::size_t k = 0; k < 2; ++k) {
+      read(point.children[k], point_path[k], allowed, value[i][k]);
+    }
+  }
+}
+
+void read(const TomlNode& node, const KeyPath& path, const Allowed& allowed,
           std::vector<std::vector<int>>& value) {
   expect_array(node, path, "an array of groups of agents");
   value.clear();

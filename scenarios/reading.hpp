@@ -77,6 +77,9 @@ void read(const TomlNode& node, const KeyPath& path, const Allowed& allowed,
 /// Pairs of agents, each a number or a name; a name becomes −1, to be found later.
 void read(const TomlNode& node, const KeyPath& path, const Allowed& allowed,
           std::vector<std::array<int, 2>>& value);
+/// Points, each two coordinates.
+void read(const TomlNode& node, const KeyPath& path, const Allowed& allowed,
+          std::vector<std::array<double, 2>>& value);
 /// Groups of agents, each a number or a name; a name becomes −1, to be found later.
 void read(const TomlNode& node, const KeyPath& path, const Allowed& allowed,
           std::vector<std::vector<int>>& value);

@@ -30,7 +30,8 @@ std::vector<PositionSensor> position_sensors(const AgentSpec& spec, const WorldS
   const double across = spec.sensor.sigma_m.value_or(spec.sensor.sigma_across_m.value_or(1.0));
   for (const TargetSpec& target : world.targets) {
     const std::array target_m{target.position_m.at(0), target.position_m.at(1)};
-    const std::array<double, 2> sensor_m = place.value_or(std::array{0.0, 0.0});
+    std::array<double, 2> sensor_m = place.value_or(std::array{0.0, 0.0});
+    if (spec.motion) sensor_m = {target_m[0] - 1.0, target_m[1]};  // it looks from where it will be
     if (along != across && sensor_m == target_m) {
       throw InputError("agent at the place of target '" + target.name +
                        "' has no line of sight to it; move it or give sensor.sigma_m");
@@ -83,14 +84,6 @@ void require_subjects(const PreparedScenario& prepared) {
   }
 }
 
-Reach reach_of(const PreparedScenario& prepared, std::uint64_t seed) {
-  LinkPlan plan =
-      prepared.links ? *prepared.links : make_link_plan(prepared.scenario, prepared.places, seed);
-  return {.topology = std::move(plan.topology),
-          .changes = std::move(plan.changes),
-          .positions_m = positions_of(prepared.places)};
-}
-
 TalkPhase talk_phase_of(const std::string& name) {
   if (name == "staggered") return TalkPhase::staggered;
   return name == "together" ? TalkPhase::together : TalkPhase::random;
@@ -128,7 +121,10 @@ std::shared_ptr<const PreparedScenario> prepare(Scenario scenario, const Catalog
   for (const AgentSpec& spec : s.agents) {
     for (int i = 0; i < spec.count; ++i) prepared->specs.push_back(&spec);
   }
-  if (!is_drawn(s.radio)) prepared->links = make_link_plan(s, prepared->places, s.seed);
+  const bool by_place =
+      has_motion(s) && (s.radio.topology == "disk" || s.radio.topology == "by-position");
+  if (!by_place && !is_drawn(s.radio))
+    prepared->links = make_link_plan(s, prepared->places, s.seed);
   prepared->series = metrics_of(s.record);
   prepared->observations.resize(prepared->specs.size());
   for (const TargetSpec& target : s.world.targets) {
@@ -152,16 +148,39 @@ Run::Run(std::shared_ptr<const PreparedScenario> prepared, const Catalog& catalo
                    .events_max = prepared_->scenario.events_max,
                    .record = {.keep_messages = prepared_->scenario.record.messages == "all",
                               .digest = options.digest,
-                              .ledger_digest = options.ledger_digest}}),
-      radio_(std::make_unique<Radio>(simulation_, reach_of(*prepared_, options.seed),
-                                     radio_options(prepared_->scenario))) {
+                              .ledger_digest = options.ledger_digest}}) {
   simulation_.name_of_agent = [this](AgentId id) {
     return id >= 0 ? prepared_->names[static_cast<std::size_t>(id)] : std::string("central");
   };
+  build_radio(options.seed);
   build_agents(catalog);
 }
 
 Run::~Run() = default;
+
+void Run::build_radio(std::uint64_t seed) {
+  const Scenario& scenario = prepared_->scenario;
+  const RadioOptions options = radio_options(scenario);
+  const auto agents = static_cast<int>(prepared_->specs.size());
+  Reach reach{.topology = Topology::edges(agents, {}),
+              .positions_m = positions_of(prepared_->places)};
+  if (has_motion(scenario)) {
+    reach.by_place = scenario.radio.topology == "disk" || scenario.radio.topology == "by-position";
+    // Where the graph says who hears whom, places are asked for one by one.
+    const double reach_m = reach.by_place ? options.propagation.reach_m() : 1e6;
+    paths_ = std::make_unique<AgentPaths>(scenario, prepared_->places, seed);
+    places_ = std::make_unique<Places>(agents, reach_m, 0.25 * reach_m);
+    movement_ = std::make_unique<Movement>(simulation_, *places_, *paths_);
+    reach.places = places_.get();
+  }
+  if (!reach.by_place) {
+    LinkPlan plan =
+        prepared_->links ? *prepared_->links : make_link_plan(scenario, prepared_->places, seed);
+    reach.topology = std::move(plan.topology);
+    reach.changes = std::move(plan.changes);
+  }
+  radio_ = std::make_unique<Radio>(simulation_, std::move(reach), options);
+}
 
 void Run::build_agents(const Catalog& catalog) {
   const Scenario& scenario = prepared_->scenario;
@@ -207,6 +226,7 @@ std::unique_ptr<Agent> Run::make_estimator(AgentId id) {
   options.subjects = static_cast<int>(prepared_->subjects.size());
   options.dimension = static_cast<int>(prepared_->subjects.front().truth.size());
   options.sensors = prepared_->sensors[i];
+  options.moves = spec.motion.has_value();
   options.sensor_period = Duration::seconds(spec.sensor.period_s);
   options.sensor_start = Time::at(Duration::seconds(spec.sensor.start_s));
   if (spec.sensor.end_s) options.sensor_end = Time::at(Duration::seconds(*spec.sensor.end_s));
@@ -253,6 +273,7 @@ void Run::keep_record_only() {
   agents_.clear();
   contexts_.clear();
   radio_.reset();
+  movement_.reset();
   witness_.reset();
 }
 

@@ -15,9 +15,11 @@
 #include "agents/catalog.hpp"
 #include "agents/estimator_agent.hpp"
 #include "agents/witness.hpp"
+#include "net/movement.hpp"
 #include "scenarios/life.hpp"
 #include "scenarios/links.hpp"
 #include "scenarios/loader.hpp"
+#include "scenarios/motion.hpp"
 #include "scenarios/scenario.hpp"
 #include "sim/world/mrclam.hpp"
 
@@ -77,6 +79,7 @@ class Run {
   void keep_record_only();
 
  private:
+  void build_radio(std::uint64_t seed);
   void build_agents(const Catalog& catalog);
   std::unique_ptr<Agent> make_estimator(AgentId id);
   void leave_final_values();
@@ -87,7 +90,10 @@ class Run {
   // The order matters: what is below is destroyed first and may use what is above.
   std::shared_ptr<const PreparedScenario> prepared_;
   Simulation simulation_;
-  std::unique_ptr<Witness> witness_;  // owns the riders of packets in flight
+  std::unique_ptr<Witness> witness_;   // owns the riders of packets in flight
+  std::unique_ptr<AgentPaths> paths_;  // null if nobody moves, and so the next two
+  std::unique_ptr<Places> places_;
+  std::unique_ptr<Movement> movement_;
   std::unique_ptr<Radio> radio_;
   std::vector<std::unique_ptr<Context>> contexts_;
   std::vector<std::unique_ptr<Agent>> agents_;

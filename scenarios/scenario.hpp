@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/motion_spec.hpp"
 #include "scenarios/radio_spec.hpp"
 
 namespace hearsay {
@@ -68,6 +69,7 @@ struct AgentSpec {
   int count = 1;                   ///< 1 … 1e6
   std::optional<std::vector<double>> position_m;  ///< 2 coordinates
   std::optional<CircleSpec> circle;               ///< instead of position_m
+  std::optional<MotionSpec> motion;               ///< none: it stands still
   SensorSpec sensor;
   EstimatorSpec estimator;
   TalkSpec talk;

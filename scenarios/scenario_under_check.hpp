@@ -48,8 +48,10 @@ class ScenarioUnderCheck {
   std::vector<std::size_t> by_name_;  // agents sorted by name
 };
 
-/// True if the file says where such an agent stands.
+/// True if the file says where such an agent stands, or begins.
 inline bool placed(const AgentSpec& agent) { return agent.position_m || agent.circle; }
+/// True if it says where the agent is.
+inline bool has_place(const AgentSpec& agent) { return placed(agent) || agent.motion; }
 
 /// The first one whose name an earlier one has, too.
 std::optional<std::size_t> first_duplicate(const std::vector<std::string>& names);
@@ -62,6 +64,10 @@ void check_transmitter(ScenarioUnderCheck& file);
 void check_radio(ScenarioUnderCheck& file);
 /// The part of check_radio() about who hears whom when.
 void check_links(ScenarioUnderCheck& file);
+
+/// Checks how agents move, and reads their tracks.
+/// @throws InputError.
+void check_motion(ScenarioUnderCheck& file);
 
 /// Checks losses, propagation, jammers and dropouts, and finds the numbers of agents in them. Part
 /// of check_radio().

@@ -24,6 +24,7 @@ const char* type_of(const std::string&) { return "string"; }
 const char* type_of(const std::vector<double>&) { return "2 coordinates"; }
 const char* type_of(const std::vector<std::string>&) { return "array of strings"; }
 const char* type_of(const std::vector<std::array<int, 2>>&) { return "array of pairs"; }
+const char* type_of(const std::vector<std::array<double, 2>>&) { return "array of points"; }
 const char* type_of(const std::vector<std::vector<int>>&) { return "array of groups"; }
 const char* type_of(const std::map<std::string, double>&) { return "number"; }
 template <class T>

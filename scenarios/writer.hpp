@@ -22,9 +22,9 @@ inline std::string toml_text(const std::string& value) { return to_toml(std::str
 
 template <class T>
 std::string toml_text(const std::vector<T>& values);
-template <std::size_t n>
-std::string toml_text(const std::array<int, n>& values) {
-  return toml_text(std::vector<int>(values.begin(), values.end()));
+template <class T, std::size_t n>
+std::string toml_text(const std::array<T, n>& values) {
+  return toml_text(std::vector<T>(values.begin(), values.end()));
 }
 template <class T>
 std::string toml_text(const std::vector<T>& values) {

@@ -29,6 +29,13 @@ PositionSensor::PositionSensor(const Options& options) : options_(options) {
   information_ = fill(1.0 / a, 1.0 / c);
 }
 
+PositionSensor PositionSensor::moved_to(const std::array<double, 2>& sensor_m) const {
+  Options options = options_;
+  options.sensor_m = sensor_m;
+  if (sensor_m == options.target_m) options.sensor_m[0] -= 1.0;
+  return PositionSensor(options);
+}
+
 gaussian::Belief PositionSensor::measure(Stream& draws) const {
   const double along = options_.sigma_along_m * draws.normal();
   const double across = options_.sigma_across_m * draws.normal();

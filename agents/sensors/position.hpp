@@ -23,6 +23,12 @@ class PositionSensor {
   /// One measurement as information (z = x + v, v ~ N(0, S); eq. 3.34–3.35 with M = I), from two
   /// normal draws of `draws`.
   gaussian::Belief measure(Stream& draws) const;
+  /// True if the noise depends on the line of sight.
+  bool has_direction() const { return options_.sigma_along_m != options_.sigma_across_m; }
+
+  /// The same sensor standing elsewhere. Just on the target, where there is no line of sight, it
+  /// looks along x.
+  PositionSensor moved_to(const std::array<double, 2>& sensor_m) const;
 
   /// S (2×2), m².
   const gaussian::Matrix& covariance() const { return S_; }

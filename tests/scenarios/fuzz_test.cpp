@@ -6,6 +6,7 @@
 
 #include "scenarios/channel.hpp"
 #include "scenarios/links.hpp"
+#include "scenarios/motion.hpp"
 #include "temp_files.hpp"
 
 namespace hearsay {
@@ -193,6 +194,64 @@ TEST_F(Fuzz, AContactTraceIsReadOrRefused) {
   }
   EXPECT_GT(read, 20);
   EXPECT_GT(refused, 500);
+}
+
+TEST_F(Fuzz, MotionIsReadAndGivesLegsOrIsRefused) {
+  const std::string moving = R"(duration_s = 60
+[[agents]]
+motion = { kind = "waypoints", points_m = [[0, 1], [2, 3]], speed_m_per_s = 4, repeat = "loop" }
+[[agents]]
+motion = { kind = "lawn-mower", area_m = [[0, 1], [9, 8]], speed_m_per_s = 4, lane_spacing_m = 2 }
+[[agents]]
+count = 2
+[agents.motion]
+kind = "random-waypoint"
+area_m = [[0, 1], [9, 8]]
+speed_min_m_per_s = 1
+speed_max_m_per_s = 3
+pause_max_s = 5
+[[agents]]
+[agents.motion]
+kind = "gauss-markov"
+area_m = [[0, 1], [9, 8]]
+speed_mean_m_per_s = 1
+speed_sigma_m_per_s = 1
+direction_sigma_rad = 3
+alpha = 0.75
+)";
+  Dice dice;
+  for (int i = 0; i < 1500; ++i) {
+    attempt(mutated(moving, dice), [] {
+      const Scenario s = load_scenario("f.toml", {}, {});
+      const auto places_m = agent_positions(s);
+      for (std::size_t agent = 0; agent < s.agents.size(); ++agent) {
+        if (!s.agents[agent].motion) continue;
+        const auto motion = make_motion(s.agents[agent], {}, static_cast<AgentId>(agent), 1);
+        Leg leg = motion->next();
+        for (int k = 0; k < 20 && leg.end < Time::never(); ++k) {
+          const Time end = leg.end;
+          leg = motion->next();
+          ASSERT_EQ(leg.begin, end);
+          ASSERT_GT(leg.end, end);
+        }
+      }
+    });
+  }
+  EXPECT_GT(read, 20);
+  EXPECT_GT(refused, 500);
+}
+
+TEST_F(Fuzz, ATrackIsReadOrRefused) {
+  write("scenario.toml",
+        "duration_s = 9\n[[agents]]\nname = \"a\"\ncount = 2\n"
+        "motion = { kind = \"track\", file = \"f.toml\" }\n");
+  const std::string track = "t_s,agent,x_m,y_m\n0,a0,1,2\n1.5,1,0,4\n# later\n2,\"a0\",3,1e3\n";
+  Dice dice;
+  for (int i = 0; i < 1500; ++i) {
+    attempt(mutated(track, dice), [] { load_scenario("scenario.toml", {}, {}); });
+  }
+  EXPECT_GT(read, 20);
+  EXPECT_GT(refused, 300);
 }
 
 TEST_F(Fuzz, AStudyIsReadOrRefused) {

@@ -218,7 +218,7 @@ Outcome run_ours(const Layout& layout) {
     paths.emplace(layout);
     places.emplace(agents, range_m, 0.25 * range_m);
     movement.emplace(simulation, *places, *paths);
-    reach = {.topology = Topology::edges(agents, {}), .places = &*places};
+    reach = {.topology = Topology::edges(agents, {}), .places = &*places, .by_place = true};
   }
   Radio radio(simulation, std::move(reach), options_with(extra));
   for (AgentId a = 0; a < agents; ++a) {

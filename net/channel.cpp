@@ -153,6 +153,7 @@ void Channel::route(Transmission& t) {
   t.route.neighbours = &t.receiver;
   const std::int64_t link = topology_.link(t.sender, t.receiver);
   t.route.reaches = link >= 0;
+  t.route.first_link = no_link;
   if (!t.route.reaches) return;
   t.route.first_link = static_cast<std::uint32_t>(link);
   if (ears_.empty()) return;

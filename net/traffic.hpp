@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "net/packet.hpp"
+#include "net/transmission.hpp"
 #include "sim/kernel/record.hpp"
 
 namespace hearsay {
@@ -34,14 +35,14 @@ class Traffic {
   Traffic(Record& record, int agents, bool count_links);
 
   /// One fate of one packet; `row` has all but receiver and fate. `link` matters if links are
-  /// counted.
+  /// counted; no_link: to somebody who cannot hear the sender.
   void settle(MessageRow& row, AgentId receiver, std::uint32_t link, Fate fate) {
     const auto f = static_cast<std::size_t>(fate);
     row.receiver = receiver;
     row.fate = fate_names_[f];
     record_.message(row);
     ++senders_[static_cast<std::size_t>(row.sender)].fates[f];
-    if (count_links_) count(link, f);
+    if (count_links_ && link != no_link) count(link, f);
   }
   SenderCounts& sender(AgentId agent) { return senders_[static_cast<std::size_t>(agent)]; }
   const SenderCounts& sender(AgentId agent) const {

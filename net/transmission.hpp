@@ -14,6 +14,9 @@
 
 namespace hearsay {
 
+/// The number of a link that is not there: to somebody who cannot hear the sender.
+inline constexpr std::uint32_t no_link = UINT32_MAX;
+
 /// A potential receiver of a packet.
 struct Ear {
   Duration delay;  ///< later than others by the way there

@@ -27,9 +27,11 @@ struct Reach {
   Topology topology;
   std::vector<LinkChange> changes = {};  ///< links that come and go, as in LinkPlan
   std::vector<Point> positions_m = {};   ///< of radios that stand, by agent; empty: not known
-  /// Of moving radios; its reach is that of the propagation. Not owned, outlives the radio.
-  /// Somebody else keeps it up to date.
+  /// Where radios are that move. Not owned, outlives the radio; somebody else keeps it up to date.
   Places* places = nullptr;
+  /// Who hears whom follows from `places`, whose reach is that of the propagation, and not from the
+  /// topology.
+  bool by_place = false;
 };
 
 class Channel {

@@ -126,7 +126,7 @@ TEST_F(ChannelChecks, PropagationNeedsATopologyByPositionAndPlaces) {
             "radio.propagation.range_m");
   EXPECT_EQ(error(by_position("range_m = 3") + "[[agents]]\n"),
             "s.toml:5: agents[0]: topology = \"by-position\" needs to know where it stands: "
-            "position_m or circle");
+            "position_m, circle or motion");
   EXPECT_EQ(error(by_position("range_m = 3") + "propagation_m_per_s = 343\n"), "no error");
 }
 
@@ -211,8 +211,9 @@ TEST_F(ChannelChecks, AJammerHasAPlaceAReachAndTimes) {
             "s.toml:6: radio.jammers[0].duty = 1.5: must be at most 1");
   EXPECT_EQ(jammer_error(five + "period_s = 0\nduty = 0.5\n"),
             "s.toml:5: radio.jammers[0].period_s = 0: must be greater than 0");
-  EXPECT_EQ(jammer_error(five + "[[agents]]\n"),
-            "s.toml:5: agents[0]: a jammer needs to know where it stands: position_m or circle");
+  EXPECT_EQ(
+      jammer_error(five + "[[agents]]\n"),
+      "s.toml:5: agents[0]: a jammer needs to know where it stands: position_m, circle or motion");
 }
 
 TEST_F(ChannelChecks, ADropoutIsPlannedOrRandom) {

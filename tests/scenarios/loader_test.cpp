@@ -288,8 +288,8 @@ TEST_F(Loader, ADiskNeedsARangeAndPlaces) {
   EXPECT_EQ(error_with("\"ring\"", "\"disk\""),
             "s.toml:8: radio.topology: \"disk\" needs radio.range_m above 0");
   EXPECT_EQ(error_with("\"ring\"", "\"disk\"\nrange_m = 5"),
-            "s.toml:13: agents[0]: topology = \"disk\" needs to know where it stands: position_m "
-            "or circle");
+            "s.toml:13: agents[0]: topology = \"disk\" needs to know where it stands: position_m, "
+            "circle or motion");
 }
 
 TEST_F(Loader, APropagationNeedsASpeedAndADisk) {
@@ -321,7 +321,7 @@ TEST_F(Loader, APositionSensorNeedsOneKindOfNoise) {
             "s.toml:14: agents[0].sensor.sigma_across_m: needs sigma_along_m, too");
   EXPECT_EQ(error_with("sigma_m = 5.0", "sigma_along_m = 1, sigma_across_m = 2"),
             "s.toml:14: agents[0].sensor.sigma_along_m: needs to know where the agent stands: "
-            "position_m or circle");
+            "position_m, circle or motion");
   EXPECT_EQ(error("duration_s = 1\n[[agents]]\nsensor = { kind = \"position\", sigma_m = 1 }"),
             "s.toml:3: agents[0].sensor.kind: \"position\" needs at least one target in "
             "world.targets");

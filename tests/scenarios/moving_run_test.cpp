@@ -17,8 +17,8 @@ class MovingRun : public InTempDirectory {
     write("s.toml", scenario);
     const Catalog catalog;
     LogCache logs;
-    Run run(prepare(load_scenario("s.toml", {}, known_names(catalog)), catalog, logs), catalog,
-            {.seed = 1});
+    hearsay::Run run(prepare(load_scenario("s.toml", {}, known_names(catalog)), catalog, logs),
+                     catalog, {.seed = 1});
     const RunEnd end = run.run();
     EXPECT_TRUE(end.ok()) << end.message;
     std::map<std::string, std::uint64_t> sums;

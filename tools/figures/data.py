@@ -9,7 +9,7 @@ import urllib.parse
 import numpy as np
 
 APPLICATION_ID = 0x68727379  # "hrsy"
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2  # that of sim/record/database.hpp
 CENTRAL = -1
 
 

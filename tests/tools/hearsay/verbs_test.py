@@ -2,6 +2,7 @@
 import csv
 import json
 import sqlite3
+import subprocess
 import unittest
 
 from bed import SOURCE, Bed
@@ -56,6 +57,16 @@ class Verbs(Bed):
         differ = self.command("diff", "a.db", "a.db", "--run-a", "1", "--run-b", "2")
         self.assertEqual(differ.returncode, 1)
         self.assertIn(" | ", differ.stdout)
+
+    def test_figure_scripts_read_what_a_sweep_wrote(self):
+        self.good("sweep", "ring.study.toml", "--out", "ring.db")
+        script = SOURCE / "tools" / "figures" / "table.py"
+        drawn = subprocess.run(["/usr/bin/python3", "-B", script, "ring.db", "table.md"], cwd=self.dir,
+                               capture_output=True, text=True, timeout=300)
+        self.assertEqual(drawn.returncode, 0, drawn.stderr)
+        table = (self.dir / "table.md").read_text()
+        for rule in ["none", "naive", "ci-det"]:
+            self.assertIn(rule, table)
 
     def test_messages_are_kept_on_request(self):
         self.good("run", "ring.toml", "--out", "a.db", "--set", "record.messages=all")

@@ -23,8 +23,8 @@ bool arrives_before(const Ear& a, const Ear& b) {
 }
 
 template <class T>
-T& at_link(std::vector<T>& values, std::uint32_t link, const T& first = {}) {
-  if (values.size() <= link) values.resize(std::bit_ceil(std::size_t{link} + 1), first);
+T& at_link(std::vector<T>& values, std::uint32_t link) {
+  if (values.size() <= link) values.resize(std::bit_ceil(std::size_t{link} + 1));
   return values[link];
 }
 
@@ -77,7 +77,7 @@ Channel::Channel(Simulation& simulation, Reach reach, const RadioOptions& option
     }
   }
   if (jitter_.law != JitterOptions::Law::none && !jitter_.reordering) {
-    link_arrival_.resize(topology_.links(), Time() - 1_ns);
+    link_arrival_.resize(topology_.links());
   }
   schedule_change();
 }
@@ -308,9 +308,10 @@ void Channel::draw_jitter(Transmission& t) {
     Duration delay = later(Time::at(pure), at_most_9e9(jitter_s)).since_start();
     if (!jitter_.reordering) {
       // Not at the same instant: there, who is first depends on what else the packets have to do.
-      Time& last = at_link(link_arrival_, link, Time() - 1_ns);
-      last = std::max(later(last, 1_ns), later(t.arrives, delay));
-      delay = last - t.arrives;
+      Time& earliest = at_link(link_arrival_, link);
+      const Time arrival = std::max(earliest, later(t.arrives, delay));
+      delay = arrival - t.arrives;
+      earliest = later(arrival, 1_ns);
     }
     sorting_.push_back(
         {{delay, t.route.hearer(i), link}, t.fates[i], t.numbers.empty() ? 0 : t.numbers[i]});

@@ -128,7 +128,7 @@ class Channel {
   std::vector<LinkQuality> link_quality_;           // of radios that stand, unless certain
   std::map<std::uint64_t, std::uint32_t> numbers_;  // of links of moving radios, by both ends
   std::vector<std::uint64_t> link_packets_;         // packets without tick so far, a link
-  std::vector<Time> link_arrival_;                  // in-order jitter: the last arrival, a link
+  std::vector<Time> link_arrival_;  // in-order jitter: when the next may arrive at the earliest
   struct Sorted {
     Ear ear;
     Fate fate;

@@ -49,6 +49,10 @@ class Channel {
   std::span<const AgentId> neighbours(AgentId agent);
   /// True if they may change over time.
   bool neighbours_change() const { return by_place_ || !changes_.empty(); }
+  /// True if links of the graph come and go.
+  bool links_change() const { return !changes_.empty(); }
+  /// Whether the link to the packet's i-th hearer is up now.
+  bool link_up(const Transmission& t, std::size_t i) const { return states_.up(t.route.link(i)); }
   /// True if who may hear a packet is known when it is handed over.
   bool foreseen() const { return !by_place_; }
   /// Where `agent` is now. @throws BrokenInvariant if nobody knows.

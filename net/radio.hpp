@@ -159,6 +159,8 @@ class Radio final : private AccessUser {
   void begin(std::uint32_t slot);
   void begin_frames(std::uint32_t slot);
   void end_frames(std::uint32_t slot);
+  void put_broadcast_on_air(Transmission& t);
+  void take_broadcast_off_air(Transmission& t);
   void put_on_air(Transmission& t, AgentId from, AgentId to, Fate& fate, Time end);
   void take_off_air(Transmission& t, AgentId from, AgentId to, const Fate& fate);
   void let_go(AgentId sender);

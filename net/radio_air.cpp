@@ -99,11 +99,7 @@ void Radio::begin_frames(std::uint32_t slot) {
     return schedule(slot);
   }
   if (t.receiver == no_agent) {
-    const OnAir span{now, t.end};
-    receptions_->begin_sending(t.sender, span);
-    for (std::size_t i = 0; i < t.route.size; ++i) {
-      receptions_->begin(t.route.hearer(i), t.fates[i], channel_.power_dbm(t, i), span);
-    }
+    put_broadcast_on_air(t);
   } else {
     put_on_air(t, t.sender, t.receiver, t.fates[0], t.end);
   }
@@ -116,10 +112,7 @@ void Radio::end_frames(std::uint32_t slot) {
   const AgentId sender = t.sender;
   t.event = EventId();
   if (t.receiver == no_agent) {
-    for (std::size_t i = 0; i < t.route.size; ++i) {
-      receptions_->end(t.route.hearer(i), t.fates[i]);
-    }
-    receptions_->end_sending(sender);
+    take_broadcast_off_air(t);
   } else {
     take_off_air(t, sender, t.receiver, t.fates[0]);
   }
@@ -127,6 +120,31 @@ void Radio::end_frames(std::uint32_t slot) {
   channel_.launch(t);
   schedule(slot);
   if (!t.acknowledged) let_go(sender);
+}
+
+// Where links come and go, a frame is not on the air where its link is down: `overheard` keeps who
+// that is.
+void Radio::put_broadcast_on_air(Transmission& t) {
+  const OnAir span{simulation_.now(), t.end};
+  const bool some_down = channel_.links_change();
+  if (some_down) t.overheard.assign(t.route.size, Fate::out_of_range);
+  receptions_->begin_sending(t.sender, span);
+  for (std::size_t i = 0; i < t.route.size; ++i) {
+    if (some_down) {
+      if (!channel_.link_up(t, i)) continue;
+      t.overheard[i] = Fate::delivered;
+    }
+    receptions_->begin(t.route.hearer(i), t.fates[i], channel_.power_dbm(t, i), span);
+  }
+}
+
+void Radio::take_broadcast_off_air(Transmission& t) {
+  const bool some_down = channel_.links_change();
+  for (std::size_t i = 0; i < t.route.size; ++i) {
+    if (some_down && t.overheard[i] == Fate::out_of_range) continue;
+    receptions_->end(t.route.hearer(i), t.fates[i]);
+  }
+  receptions_->end_sending(t.sender);
 }
 
 // A frame for one is heard by all in range of `from`.

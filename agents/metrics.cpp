@@ -35,6 +35,11 @@ constexpr std::array kMetrics = {
                "travelled here"},
     MetricInfo{"not_positive", kSeries, kMean, false,
                "1 where the belief's information matrix is indefinite or overflown"},
+    MetricInfo{
+        "disagreement_m", kSeries, kMean, false,
+        "largest distance an axis from this estimate to that of any other agent, m; of agent "
+        "−1: between any two; missing if the agent is down, has no estimate or nobody else "
+        "has one"},
     MetricInfo{"anees", MetricTable::derived, kMean, false,
                "mean of nees over repetitions, divided by n"},
     MetricInfo{"distance_error_m", kScalar, kMean, false,
@@ -52,6 +57,11 @@ constexpr std::array kMetrics = {
     MetricInfo{"messages_refused", kScalar, kMean, false,
                "messages malformed, or older than known"},
     MetricInfo{"measurements", kScalar, kMean, false, "measurements made"},
+    MetricInfo{
+        "agree_again_s", kScalar, Aggregate::median, false,
+        "of agent −1: from record.agreement.from_s to the first sample from which on no two "
+        "agents that are up differ by more than within_m an axis on any subject, s; infinite "
+        "if they do at the end, or somebody who is up has no estimate"},
     MetricInfo{"packets", kScalar, kMean, false, "packets handed to the radio"},
     MetricInfo{"bytes_sent", kScalar, kMean, false, "bytes sent, headers included"},
     MetricInfo{"air_time_s", kScalar, kMean, false, "time the transmitter was sending, s"},
@@ -92,7 +102,7 @@ constexpr std::array kMetrics = {
                "log lines skipped: range not positive"},
     MetricInfo{"state_dimension", kScalar, kMean, false, "n, of agent −1"},
 };
-static_assert(kMetrics[static_cast<std::size_t>(Metric::not_positive)].name == "not_positive");
+static_assert(kMetrics[static_cast<std::size_t>(Metric::disagreement_m)].name == "disagreement_m");
 
 }  // namespace
 

@@ -14,7 +14,8 @@ enum class MetricTable {
 };
 
 /// How repetitions of a metric are summed up unless a claim says otherwise.
-enum class Aggregate { mean, rms };
+///   median  of times that may never come: those count as infinite
+enum class Aggregate { mean, rms, median };
 
 struct MetricInfo {
   std::string_view name;
@@ -42,7 +43,8 @@ enum class Metric {
   multiplicity_share,
   reach_gap,
   not_positive,
+  disagreement_m,
 };
-inline constexpr int series_metric_count = 13;
+inline constexpr int series_metric_count = 14;
 
 }  // namespace hearsay

@@ -29,12 +29,14 @@ Witness::Witness(Simulation& simulation, Options options)
     metric_names_[m] = record.name(metrics()[m].name);
   }
   for (const Metric metric : options_.series) wanted_[static_cast<std::size_t>(metric)] = true;
+  if (options_.agreement) agreement_.emplace(*options_.agreement);
   for (const Subject& subject : options_.subjects) {
     require(static_cast<int>(subject.truth.size()) == dimension_,
             "subjects of one run differ in dimension");
     subject_names_.push_back(record.name(subject.name));
     books_.emplace_back(dimension_);
     central_.push_back({gaussian::Belief::unknown(dimension_), Ledger{}});
+    spreads_.emplace_back(dimension_);
   }
 }
 
@@ -52,7 +54,10 @@ void Witness::watch(AgentId agent, const StaticGaussianEstimator& estimator) {
   watched_.push_back({.agent = agent, .estimator = &estimator});
 }
 
-void Witness::start() { schedule_sample(Time()); }
+void Witness::start() {
+  schedule_sample(Time());
+  if (agreement_) schedule_agreement(agreement_->options().from);
+}
 
 void Witness::schedule_sample(Time at) {
   if (at > simulation_.end()) return;
@@ -62,12 +67,50 @@ void Witness::schedule_sample(Time at) {
   });
 }
 
+void Witness::schedule_agreement(Time at) {
+  if (at > simulation_.end()) return;
+  simulation_.schedule(at, Phase::observe, [this, at] {
+    sample_agreement();
+    schedule_agreement(at + agreement_->options().period);
+  });
+}
+
+void Witness::gather_spreads() {
+  for (std::size_t s = 0; s < spreads_.size(); ++s) {
+    spreads_[s].clear();
+    for (const Watched& watched : watched_) {
+      if (!up(watched.agent)) continue;
+      spreads_[s].add(gaussian::state(watched.estimator->tracked(static_cast<int>(s)).belief));
+    }
+  }
+}
+
+void Witness::sample_agreement() {
+  gather_spreads();
+  const bool agreed = std::all_of(spreads_.begin(), spreads_.end(), [this](const Spread& spread) {
+    return agreement_->holds(spread);
+  });
+  agreement_->sample(simulation_.now(), agreed);
+}
+
+double Witness::disagreement(const Watched& watched, const gaussian::Assessment& assessment,
+                             int subject) const {
+  if (!assessment.state || !assessment.state->allFinite() || !up(watched.agent)) return kNone;
+  return spreads_[static_cast<std::size_t>(subject)].farthest(*assessment.state).value_or(kNone);
+}
+
 void Witness::sample() {
   last_sample_ = simulation_.now();
+  if (wants(Metric::disagreement_m)) gather_spreads();
   const int subjects = static_cast<int>(options_.subjects.size());
   for (int s = 0; s < subjects; ++s) {
     const TrackedBelief& central = central_[static_cast<std::size_t>(s)];
-    keep(central_agent, s, measure(central, gaussian::assess(central.belief), s, true));
+    Values values = measure(central, gaussian::assess(central.belief), s, true);
+    if (wants(Metric::disagreement_m)) {
+      at(values, Metric::disagreement_m) =
+          spreads_[static_cast<std::size_t>(s)].width().value_or(kNone);
+    }
+    keep(central_agent, s, values);
   }
   for (Watched& watched : watched_) {
     for (int s = 0; s < subjects; ++s) sample(watched, s);
@@ -78,6 +121,9 @@ void Witness::sample(Watched& watched, int subject) {
   const TrackedBelief& tracked = watched.estimator->tracked(subject);
   const gaussian::Assessment assessment = gaussian::assess(tracked.belief);
   Values values = measure(tracked, assessment, subject, false);
+  if (wants(Metric::disagreement_m)) {
+    at(values, Metric::disagreement_m) = disagreement(watched, assessment, subject);
+  }
   ++watched.samples;
   if (at(values, Metric::not_positive) != 0.0) ++watched.not_positive;
   if (options_.ledger) {
@@ -164,6 +210,11 @@ void Witness::finish() {
   Record& record = simulation_.record();
   record.scalar(central_agent, record.name("state_dimension"), dimension_);
   record.scalar(central_agent, record.name("measurements"), static_cast<double>(measurements_));
+  if (agreement_) {
+    const Time now = simulation_.now();
+    if (now >= agreement_->options().from && agreement_->last_sample() != now) sample_agreement();
+    record.scalar(central_agent, record.name("agree_again_s"), agreement_->agree_again_s());
+  }
   finish({.agent = central_agent, .estimator = nullptr});
   for (const Watched& watched : watched_) finish(watched);
 }

@@ -5,11 +5,13 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "agents/agreement.hpp"
 #include "agents/estimators/static_gaussian.hpp"
 #include "agents/metrics.hpp"
 #include "sim/kernel/simulation.hpp"
@@ -25,10 +27,12 @@ struct Subject {
 class Witness {
  public:
   struct Options {
-    std::vector<Subject> subjects;  ///< all of the same dimension n
-    std::vector<Metric> series;     ///< kept over time
-    Duration series_period;         ///< > 0: samples at 0, period, … and at the end
-    bool ledger = true;             ///< keep ledgers and what follows from them
+    std::vector<Subject> subjects;                ///< all of the same dimension n
+    std::vector<Metric> series;                   ///< kept over time
+    Duration series_period;                       ///< > 0: samples at 0, period, … and at the end
+    bool ledger = true;                           ///< keep ledgers and what follows from them
+    std::optional<Agreement::Options> agreement;  ///< since when all agree; nothing: not asked
+    std::function<bool(AgentId)> up;              ///< whether an agent is up; empty: all are
   };
   /// `simulation` must outlive the witness.
   Witness(Simulation& simulation, Options options);
@@ -61,7 +65,14 @@ class Witness {
   using Values = std::array<double, series_metric_count>;
 
   void schedule_sample(Time at);
+  void schedule_agreement(Time at);
   void sample();
+  void sample_agreement();
+  /// Measures how far the estimates of those who are up lie apart.
+  void gather_spreads();
+  bool up(AgentId agent) const { return !options_.up || options_.up(agent); }
+  double disagreement(const Watched& watched, const gaussian::Assessment& assessment,
+                      int subject) const;
   void sample(Watched& watched, int subject);
   Values measure(const TrackedBelief& tracked, const gaussian::Assessment& assessment, int subject,
                  bool central) const;
@@ -83,6 +94,8 @@ class Witness {
   std::vector<MeasurementBook> books_;  // by subject
   std::vector<TrackedBelief> central_;  // by subject
   std::vector<Watched> watched_;
+  std::vector<Spread> spreads_;  // by subject; at the instant of a sample
+  std::optional<Agreement> agreement_;
   std::uint64_t measurements_ = 0;
   std::optional<Time> last_sample_;
 };

@@ -24,6 +24,7 @@ class Checker {
     }
     check_motion(file_);
     check_radio(file_);
+    check_agreement();
   }
 
  private:
@@ -33,6 +34,7 @@ class Checker {
   void check_targets();
   void check_agent(const AgentSpec& agent, const KeyPath& path);
   void check_position_sensor(const AgentSpec& agent, const KeyPath& path);
+  void check_agreement();
 
   [[noreturn]] void fail(const KeyPath& path, const std::string& why) const {
     file_.fail(path, why);
@@ -151,6 +153,20 @@ void Checker::check_position_sensor(const AgentSpec& agent, const KeyPath& path)
     fail(path["sigma_along_m"],
          "needs to know where the agent stands: position_m, circle or motion");
   }
+}
+
+void Checker::check_agreement() {
+  if (!s_.record.agreement) return;
+  const KeyPath record = top_["record"];
+  const KeyPath path = record["agreement"];
+  const AgreementSpec& agreement = *s_.record.agreement;
+  if (!agreement.within_m) fail(path["within_m"], "missing; how near is agreement?");
+  if (s_.duration_s && agreement.from_s >= *s_.duration_s) {
+    fail(path["from_s"], "must be before the end of the run (" + to_toml(*s_.duration_s) + " s)");
+  }
+  const bool any = std::any_of(s_.agents.begin(), s_.agents.end(),
+                               [](const AgentSpec& agent) { return agent.kind == "estimator"; });
+  if (!any) fail(path, "no agent of kind \"estimator\" is there to agree with another");
 }
 
 }  // namespace

@@ -108,9 +108,19 @@ void describe(V& v, AgentSpec& s) {
 }
 
 template <class V>
+void describe(V& v, AgreementSpec& s) {
+  v.field("from_s", s.from_s, time_span(true),
+          "when the last cut heals: agree_again_s is counted from here");
+  v.field("within_m", s.within_m, greater_than_zero(),
+          "agents whose estimates are that near on every axis agree");
+  v.field("period_s", s.period_s, time_span(false), "how often they are asked");
+}
+
+template <class V>
 void describe(V& v, RecordSpec& s) {
   v.field("series", s.series, one_of_if_known(v.names().metrics), "metrics kept over time");
   v.field("series_period_s", s.series_period_s, time_span(false), "time between samples");
+  v.table("agreement", s.agreement, "how long it takes until all agree (agree_again_s)");
   v.field("messages", s.messages, one_of({"all", "counts"}), "each packet's fate, or sums only");
   v.field("links", s.links, one_of({"on", "off"}), "how many packets met which fate on each link");
   v.field("ledger", s.ledger, one_of({"on", "off"}), "how often measurements were counted");

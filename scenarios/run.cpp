@@ -84,6 +84,14 @@ void require_subjects(const PreparedScenario& prepared) {
   }
 }
 
+std::optional<Agreement::Options> agreement_of(const RecordSpec& record) {
+  if (!record.agreement) return std::nullopt;
+  const AgreementSpec& spec = *record.agreement;
+  return Agreement::Options{.from = Time::at(Duration::seconds(spec.from_s)),
+                            .within_m = spec.within_m.value(),
+                            .period = Duration::seconds(spec.period_s)};
+}
+
 TalkPhase talk_phase_of(const std::string& name) {
   if (name == "staggered") return TalkPhase::staggered;
   return name == "together" ? TalkPhase::together : TalkPhase::random;
@@ -195,7 +203,9 @@ void Run::build_agents(const Catalog& catalog) {
         Witness::Options{.subjects = prepared_->subjects,
                          .series = prepared_->series,
                          .series_period = Duration::seconds(scenario.record.series_period_s),
-                         .ledger = scenario.record.ledger == "on"});
+                         .ledger = scenario.record.ledger == "on",
+                         .agreement = agreement_of(scenario.record),
+                         .up = [this](AgentId id) { return radio_->up(id); }});
   }
   for (std::size_t i = 0; i < prepared_->specs.size(); ++i) {
     const AgentSpec& spec = *prepared_->specs[i];

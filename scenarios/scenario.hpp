@@ -76,12 +76,20 @@ struct AgentSpec {
   std::map<std::string, double> parameters;  ///< free, for agents of a user's program
 };
 
+/// When agents are to be asked whether they agree, as after a heal.
+struct AgreementSpec {
+  double from_s = 0.0;             ///< first sample, ≥ 0; agree_again_s is counted from here
+  std::optional<double> within_m;  ///< > 0, must be given: estimates that near an axis agree
+  double period_s = 1.0;           ///< > 0, between samples
+};
+
 struct RecordSpec {
   std::vector<std::string> series;  ///< names of metrics kept over time; empty: none
   double series_period_s = 1.0;     ///< > 0; samples at 0, period, 2·period, … and at the end
-  std::string messages = "counts";  ///< "all" | "counts"
-  std::string links = "on";         ///< "on" | "off"
-  std::string ledger = "on";        ///< "on" | "off"
+  std::optional<AgreementSpec> agreement;  ///< none: agree_again_s is not recorded
+  std::string messages = "counts";         ///< "all" | "counts"
+  std::string links = "on";                ///< "on" | "off"
+  std::string ledger = "on";               ///< "on" | "off"
 };
 
 struct Scenario {

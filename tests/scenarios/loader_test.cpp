@@ -215,6 +215,31 @@ TEST_F(Loader, AnUnknownChoiceIsAnsweredWithTheAllowedOnes) {
             "s.toml:19: record.series[1] = \"nees\": stands there twice");
 }
 
+TEST_F(Loader, AgreementIsCheckedAgainstTheRest) {
+  const std::string estimators =
+      "duration_s = 9\nworld.targets = [{ position_m = [1, 2] }]\n"
+      "[[agents]]\ncount = 2\n[record]\n";
+  const AgreementSpec given =
+      load(estimators + "agreement = { from_s = 3, within_m = 0.1, period_s = 0.5 }\n")
+          .record.agreement.value();
+  EXPECT_EQ(given.from_s, 3.0);
+  EXPECT_EQ(given.within_m, 0.1);
+  EXPECT_EQ(given.period_s, 0.5);
+  EXPECT_FALSE(load(estimators).record.agreement);
+  EXPECT_EQ(error(estimators + "agreement = { from_s = 3 }\n"),
+            "s.toml:6: record.agreement.within_m: missing; how near is agreement?");
+  EXPECT_EQ(error(estimators + "agreement = { from_s = 9, within_m = 1 }\n"),
+            "s.toml:6: record.agreement.from_s: must be before the end of the run (9.0 s)");
+  KnownNames names;
+  names.agent_kinds.push_back("gossip");
+  write("s.toml",
+        "duration_s = 1\n[[agents]]\nkind = \"gossip\"\n[record]\n"
+        "agreement = { within_m = 1 }\n");
+  EXPECT_EQ(error_of([&] { load_scenario("s.toml", {}, names); }),
+            "s.toml:5: record.agreement: no agent of kind \"estimator\" is there to agree with "
+            "another");
+}
+
 TEST_F(Loader, AKindThatAProgramAddsIsKnown) {
   write("s.toml", "duration_s = 1\n[[agents]]\nkind = \"gossip\"\n");
   EXPECT_EQ(error_of([] { load_scenario("s.toml", {}, {}); }),

@@ -32,11 +32,12 @@ Json rules() {
 
 Json metrics_list(const Catalog& catalog) {
   constexpr std::array tables = {"series", "scalar", "derived"};
+  constexpr std::array aggregates = {"mean", "rms", "median"};
   Json out = Json::array();
   for (const MetricInfo& metric : metrics()) {
     out.push_back({{"name", metric.name},
                    {"table", tables[static_cast<std::size_t>(metric.table)]},
-                   {"over repetitions", metric.aggregate == Aggregate::rms ? "rms" : "mean"},
+                   {"over repetitions", aggregates[static_cast<std::size_t>(metric.aggregate)]},
                    {"meaning", metric.meaning}});
   }
   for (const Catalog::OwnMetric& metric : catalog.metrics()) {

@@ -135,6 +135,49 @@ TEST(Run, ChannelRobustEqualsTheCentralFilterOverWhatReachedItOnEveryTree) {
   }
 }
 
+TEST(Run, WhoIsDownDisagreesWithNobody) {
+  const Series apart = series_of(
+      rumour({"radio.topology=line", "agents.estimator.fusion=none", "record.series_period_s=10",
+              "record.series=['disagreement_m']",
+              "dropouts=[{ agents = ['agent4'], kind = 'sleep', from_s = 15, until_s = 35 }]"}),
+      2, "disagreement_m");
+  for (const auto& [key, distance_m] : apart) {
+    const auto [agent, t_s] = key;
+    EXPECT_EQ(std::isnan(distance_m), agent == 4 && t_s > 15.0 && t_s < 35.0)
+        << agent << " at " << t_s;
+  }
+}
+
+TEST(Run, AgreementIsReachedAgainAfterAHealAndAskingForItChangesNothing) {
+  const std::vector<std::string> cut = {
+      "radio.topology=line",
+      "radio.loss.probability=0",
+      "agents.estimator.fusion=channel-robust",
+      "duration_s=60",
+      "agents.sensor.end_s=29",
+      "radio.partitions=[{ groups = [[0, 1], [2, 3, 4]], from_s = 10, until_s = 30 }]"};
+  std::vector<std::string> asked = cut;
+  asked.push_back("record.agreement={ from_s = 30, within_m = 1e-9 }");
+  const Catalog catalog;
+  OneRun without(rumour(cut), catalog, {.seed = 6});
+  OneRun with(rumour(asked), catalog, {.seed = 6});
+  ASSERT_TRUE(without.run().ok() && with.run().ok());
+  std::vector<double> times;
+  for (const ScalarRow& row : with.record().scalars()) {
+    if (with.record().text(row.name) == "agree_again_s") times.push_back(row.value);
+  }
+  // News goes one hop a talk (5 s) at least, over four hops; by then all have every measurement.
+  ASSERT_EQ(times.size(), 1u);
+  EXPECT_GT(times[0], 0.0);
+  EXPECT_LE(times[0], 20.0);
+  EXPECT_EQ(with.record().scalars().size(), without.record().scalars().size() + 1);
+  ASSERT_EQ(with.record().series().size(), without.record().series().size());
+  for (std::size_t i = 0; i < with.record().series().size(); ++i) {
+    const SeriesRow &a = with.record().series()[i], &b = without.record().series()[i];
+    EXPECT_TRUE(a.value == b.value || (std::isnan(a.value) && std::isnan(b.value)));
+  }
+}
+
 TEST(Run, OnALoopChannelRobustCountsTwice) {
   const Series gaps =
       series_of(rumour({"agents.estimator.fusion=channel-robust", "record.series=[\"reach_gap\"]"}),

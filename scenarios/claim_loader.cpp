@@ -52,7 +52,7 @@ class ExpectationReader {
     }
     if (const TomlNode* node = table_.find("at")) e_.at = read_at(*node);
     if (const TomlNode* node = table_.find("over")) e_.over = read_metric(*node, path_["over"]);
-    read_choice("statistic", {"auto", "mean", "rms", "max", "min", "any"}, e_.statistic);
+    read_choice("statistic", {"auto", "mean", "rms", "median", "max", "min", "any"}, e_.statistic);
     read_choice("scale", {"linear", "log10"}, e_.scale);
     read_kind();
     return std::move(e_);

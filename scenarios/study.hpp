@@ -60,7 +60,7 @@ struct Expectation {
   std::string at = "end";  ///< "end" | "all" (every instant) | seconds as text
   std::optional<std::string> over;  ///< divide by this metric (ratio of aggregates)
   std::string statistic =
-      "auto";  ///< over repetitions: "auto" | "mean" | "rms" | "max" | "min" | "any"
+      "auto";  ///< over repetitions: "auto" | "mean" | "rms" | "median" | "max" | "min" | "any"
   std::string scale = "linear";  ///< "linear" | "log10" (of each repetition's value)
 
   enum class Kind {

@@ -163,10 +163,9 @@ TEST_F(ClaimLoader, BoundsHaveTheirForm) {
   EXPECT_EQ(error("metric = \"nees\", at = true, at_most = 1"),
             "s.toml:10: claims[0].expect.at = true: expected \"end\", \"all\" or seconds, found a "
             "boolean");
-  EXPECT_EQ(
-      error("metric = \"nees\", statistic = \"median\", at_most = 1"),
-      "s.toml:10: claims[0].expect.statistic = \"median\": unknown; allowed: auto, mean, rms, "
-      "max, min, any; did you mean 'mean'?");
+  EXPECT_EQ(error("metric = \"nees\", statistic = \"meen\", at_most = 1"),
+            "s.toml:10: claims[0].expect.statistic = \"meen\": unknown; allowed: auto, mean, rms, "
+            "median, max, min, any; did you mean 'mean'?");
   EXPECT_EQ(error("metric = \"nees\", at_mst = 1"),
             "s.toml:10: unknown key 'at_mst' in [claims[0].expect]; did you mean 'at_most'?");
 }

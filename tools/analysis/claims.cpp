@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <set>
@@ -116,10 +117,13 @@ ClaimResult judge_claim(const Study& study, const ClaimRules& rules, const Value
 
   Tally tally(result);
   std::size_t too_few = 0;
+  std::ptrdiff_t infinite = 0;
   for (const Comparison& comparison : comparisons.list) {
     const Finding finding = examine(rules, comparison, comparisons.list.size());
     tally.add(finding, comparison);
     too_few += comparison.a.size() < 2;
+    infinite += std::count_if(comparison.a.begin(), comparison.a.end(),
+                              [](double value) { return std::isinf(value); });
   }
   if (result.comparisons > 0 && result.failing == 0 && result.open == 0) {
     result.verdict = Verdict::reproduced;
@@ -129,6 +133,7 @@ ClaimResult judge_claim(const Study& study, const ClaimRules& rules, const Value
 
   std::vector<std::string>& notes = comparisons.notes;
   if (result.comparisons == 0) notes.push_back("nothing to compare");
+  if (infinite > 0) notes.push_back(fmt::format("infinite values, which count: {}", infinite));
   if (study.repetitions == 1) {
     notes.push_back("one run, no interval");
   } else if (too_few > 0) {

@@ -14,10 +14,14 @@
 //
 // Over repetitions, `statistic`:
 //   auto      root mean square for rms_error_m, claimed_sigma_m, true_sigma_m and
-//             final_claimed_sigma_m, else the mean
+//             final_claimed_sigma_m; median for agree_again_s; else the mean
 //   mean, rms
+//   median    with an interval between order statistics
 //   max, min  an exact statement on the worst repetition, without an interval
 //   any       the share of repetitions with a value above zero, with Wilson's interval
+// Infinite values (a time that never came, a gap to an empty central filter) count under median,
+// max, min and any, where of two infinite ones neither is the greater; mean and rms leave them out
+// as missing, and are therefore refused for agree_again_s.
 // anees is the mean of nees, divided by the state's dimension. `over` divides the aggregate by that
 // of another metric (with max, min, any or a scale of log10: each repetition's value). With scale
 // log10 values, and the bounds, are logarithms; values that are not positive count as missing.
@@ -26,7 +30,8 @@
 //   at_most, at_least, within     the aggregate against bounds
 //   less_than, greater_than       paired by repetition with another cell (the axes of `than`
 //             replaced), agent or metric: the ratio of aggregates against 1 for root mean squares
-//             and with `over`, else the mean difference against 0. No cell is compared with itself.
+//             and with `over`, else the mean (median, …) difference against 0. No cell is compared
+//             with itself.
 //   grows     each repetition's slope over time (a second) against 0
 //   falls_as  each repetition's slope of log10 value against log10 time: the exponent, within
 //   agrees_with   paired; reproduced unless the interval of the difference leaves 0 out (it is a
@@ -70,7 +75,7 @@ struct ClaimResult {
   std::size_t failing = 0;         ///< wholly on the other side
   std::size_t open = 0;            ///< neither on this side nor on the other
   int repetitions = 0;             ///< fewest that a comparison has values of
-  std::size_t missing_values = 0;  ///< NULL or infinite, left out
+  std::size_t missing_values = 0;  ///< NULL, or infinite where these do not count: left out
   std::string note;                ///< why undecided, what was left out
 };
 

@@ -49,7 +49,7 @@ class Comparer {
         values_(file, only_study(file, options), stored_names(rule_)) {}
 
   std::vector<CompareRow> rows() {
-    reader_.emplace(values_, rule_);
+    reader_.emplace(values_, rule_, rule_.median);
     column_ = reader_->column();
     if (column_ == nullptr) {
       std::vector<std::string> known = values_.known_metrics();
@@ -198,13 +198,13 @@ class Comparer {
     std::size_t missing = 0;
     for (const auto& [repetition, run] : cell.runs) {
       const double a = reader_->value(cell, run, place, missing);
-      if (!std::isfinite(a)) continue;
+      if (!counts(a)) continue;
       pairs.a.push_back(a);
       if (reference == nullptr) continue;
       const auto other = reference->runs.find(repetition);
       if (other == reference->runs.end()) continue;
       const double b = reader_->value(*reference, other->second, place, missing);
-      if (!std::isfinite(b)) continue;
+      if (!counts(b)) continue;
       pairs.paired_a.push_back(a);
       pairs.paired_b.push_back(b);
     }
@@ -212,9 +212,14 @@ class Comparer {
     pairs_.push_back(std::move(pairs));
   }
 
+  bool counts(double value) const {
+    return rule_.median ? !std::isnan(value) : std::isfinite(value);
+  }
+
   Interval value_of(const std::vector<double>& values) const {
     if (values.empty()) return {NAN, -INFINITY, INFINITY};
     if (rule_.rms) return rms_interval(values, alpha);
+    if (rule_.median) return median(values, alpha);
     const bool signed_values =
         std::any_of(values.begin(), values.end(), [](double value) { return value < 0.0; });
     return signed_values ? mean_t(values, alpha) : mean_of_nonnegative(values, alpha);
@@ -225,9 +230,10 @@ class Comparer {
     if (rule_.rms) return difference_of_rms(pairs.paired_a, pairs.paired_b, row_alpha);
     std::vector<double> differences(pairs.paired_a.size());
     for (std::size_t i = 0; i < differences.size(); ++i) {
-      differences[i] = pairs.paired_a[i] - pairs.paired_b[i];
+      const double a = pairs.paired_a[i], b = pairs.paired_b[i];
+      differences[i] = a == b ? 0.0 : a - b;  // also of two that are infinite
     }
-    return mean_t(differences, row_alpha);
+    return rule_.median ? median(differences, row_alpha) : mean_t(differences, row_alpha);
   }
 
   std::vector<CompareRow> finished() {
@@ -244,7 +250,8 @@ class Comparer {
       } else if (row.pairs == 0) {
         row.verdict = "no pairs";
       } else {
-        const double rounding = equal_to_rounding * std::abs(row.value.estimate);
+        const double size = std::abs(row.value.estimate);
+        const double rounding = std::isfinite(size) ? equal_to_rounding * size : 0.0;
         row.verdict = row.difference.high < -rounding ? "lower"
                       : row.difference.low > rounding ? "higher"
                                                       : "no difference seen";

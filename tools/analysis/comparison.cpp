@@ -33,8 +33,8 @@ class Builder {
         expect_(rules.claim->expect),
         values_(values),
         cells_(cells),
-        metric_(values, rules.metric),
-        other_(values, rules.other) {
+        metric_(values, rules.metric, rules.keeps_infinite()),
+        other_(values, rules.other, rules.keeps_infinite()) {
     if (rules.over) over_.emplace(values, *rules.over);
   }
 
@@ -233,16 +233,19 @@ class Builder {
     double over = 1.0;
     bool complete = false;
   };
+  bool counts(double value) const {
+    return rules_.keeps_infinite() ? !std::isnan(value) : std::isfinite(value);
+  }
   OneSide side(const Reader& reader, const CellRuns& cell, std::size_t run, const Place& place) {
     std::size_t& missing = result_.missing_values;
     OneSide result;
     result.value = reader.value(cell, run, place, missing);
     if (over_) result.over = over_->value(cell, run, place, missing);
-    if (!std::isfinite(result.value) || !std::isfinite(result.over)) return result;
+    if (!counts(result.value) || !std::isfinite(result.over)) return result;
     if (rules_.ratio_within_repetition()) {
       result.value /= std::exchange(result.over, 1.0);
       if (rules_.log10) result.value = result.value > 0.0 ? std::log10(result.value) : NAN;
-      if (!std::isfinite(result.value)) {
+      if (!counts(result.value)) {
         ++missing;
         return result;
       }

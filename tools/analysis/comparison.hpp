@@ -13,7 +13,7 @@
 namespace hearsay::analysis {
 
 /// How repetitions are brought together.
-enum class Statistic { mean, rms, largest, smallest, any };
+enum class Statistic { mean, rms, median, largest, smallest, any };
 
 /// A claim with its names looked up.
 struct ClaimRules {
@@ -27,6 +27,8 @@ struct ClaimRules {
   bool log10 = false;
   std::optional<Statistic> statistic;  ///< nothing: by metric
 
+  /// Infinite values count: the statistic has a meaning with them.
+  bool keeps_infinite() const;
   /// Is this metric's aggregate over repetitions a root mean square?
   bool is_rms(const MetricRule& rule) const;
   /// Every value of a repetition is divided by its `over`, not the aggregates.
@@ -35,7 +37,7 @@ struct ClaimRules {
 /// @throws InputError with the study's file and the claim's line for what has no meaning.
 ClaimRules rules_of(const Study& study, const Claim& claim);
 
-/// The values of one comparison, one each repetition in which all of them are finite.
+/// The values of one comparison, one each repetition in which all of them are there.
 struct Comparison {
   std::string where;
   int state_dimension = 0;

@@ -28,9 +28,11 @@ Interval mean_of(const std::vector<double>& values, double alpha) {
 std::vector<double> minus(const std::vector<double>& a, const std::vector<double>& b) {
   std::vector<double> differences(a.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
-    const double difference = a[i] - b[i];
-    const bool equal = std::abs(difference) <= rounding * std::max(std::abs(a[i]), std::abs(b[i]));
-    differences[i] = equal ? 0.0 : difference;
+    const double size = std::max(std::abs(a[i]), std::abs(b[i]));
+    // Of two that are both infinite neither is the greater; one alone is greater than all others.
+    const bool equal =
+        std::isfinite(size) ? std::abs(a[i] - b[i]) <= rounding * size : a[i] == b[i];
+    differences[i] = equal ? 0.0 : a[i] - b[i];
   }
   return differences;
 }
@@ -93,6 +95,9 @@ Interval estimate(const ClaimRules& rules, const Comparison& c, double alpha,
   if (rules.trend) return mean_t(c.a, alpha);
   if (agrees_relatively(rules)) return relative_difference(rules, c, alpha, left_out);
   if (extremes) return extreme(rules.paired ? minus(c.a, c.b) : c.a, *rules.statistic);
+  if (rules.statistic == Statistic::median) {
+    return median(rules.paired ? minus(c.a, c.b) : c.a, alpha);
+  }
   if (rules.statistic == Statistic::any) {
     const auto positive =
         std::count_if(c.a.begin(), c.a.end(), [](double value) { return value > 0.0; });
@@ -212,7 +217,9 @@ Finding examine(const ClaimRules& rules, const Comparison& comparison, std::size
   finding.interval =
       estimate(rules, comparison, family_alpha / static_cast<double>(family), finding.left_out);
   const Interval& interval = finding.interval;
-  if (!std::isfinite(interval.estimate)) return finding;
+  if (rules.keeps_infinite() ? std::isnan(interval.estimate) : !std::isfinite(interval.estimate)) {
+    return finding;
+  }
   if (single) finding.interval = exactly(interval.estimate);
   if (expect.chi2_band) {
     decide_band(comparison, family, expect.kind, finding);
@@ -240,10 +247,12 @@ std::string quantity(const ClaimRules& rules) {
   }
   if (rules.paired) {
     if (compares_ratio(rules)) return fmt::format("ratio of {}, paired", metric);
+    if (rules.statistic == Statistic::median) return "median difference of " + metric;
     if (rules.statistic == Statistic::largest) return "largest difference of " + metric;
     if (rules.statistic == Statistic::smallest) return "smallest difference of " + metric;
     return "mean difference of " + metric;
   }
+  if (rules.statistic == Statistic::median) return "median of " + metric;
   if (rules.statistic == Statistic::largest) return "largest " + metric;
   if (rules.statistic == Statistic::smallest) return "smallest " + metric;
   if (rules.statistic == Statistic::any) return "share of repetitions with " + metric + " > 0";

@@ -14,16 +14,19 @@ namespace {
 constexpr const char* dimension_name = "state_dimension";
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
-/// Brings values together, by mean, root mean square or maximum; those that are missing stay out.
+/// Brings values together, by mean, root mean square or maximum; those that are missing (NaN) stay
+/// out. With an infinite one among them, mean and root mean square are infinite.
 class Gatherer {
  public:
   enum class Way { mean, rms, largest };
   explicit Gatherer(Way way) : way_(way) {}
 
   void add(double value) {
-    if (!std::isfinite(value)) return;
+    if (std::isnan(value)) return;
     ++count_;
-    if (way_ == Way::largest) {
+    if (way_ != Way::largest && std::isinf(value)) {
+      infinite_ += way_ == Way::rms ? std::abs(value) : value;
+    } else if (way_ == Way::largest) {
       sum_ = count_ == 1 ? value : std::max(sum_, value);
     } else if (way_ == Way::mean) {
       sum_ += value;
@@ -34,6 +37,7 @@ class Gatherer {
   double result() const {
     if (count_ == 0) return nothing;
     if (way_ == Way::largest) return sum_;
+    if (infinite_ != 0.0) return infinite_;
     const auto n = static_cast<double>(count_);
     return way_ == Way::mean ? sum_ / n : scale_ * std::sqrt(sum_ / n);
   }
@@ -53,13 +57,15 @@ class Gatherer {
   std::size_t count_ = 0;
   double sum_ = 0.0;
   double scale_ = 0.0;
+  double infinite_ = 0.0;
 };
 
 }  // namespace
 
-Reader::Reader(const Values& values, const MetricRule& rule)
+Reader::Reader(const Values& values, const MetricRule& rule, bool keeps_infinite)
     : values_(&values),
       rule_(rule),
+      keeps_infinite_(keeps_infinite),
       column_(values.find(rule.stored)),
       dimension_(values.find(dimension_name)) {
   if (dimension_ != nullptr && dimension_->is_series()) dimension_ = nullptr;
@@ -74,7 +80,7 @@ std::optional<double> Reader::value_of_agent(std::size_t run, AgentId agent, con
   if (instant == no_instant) return std::nullopt;
   const auto look = [&](int subject) {
     std::optional<double> value = column.value(run, agent, subject, instant);
-    if (value && !std::isfinite(*value)) {
+    if (value && (keeps_infinite_ ? std::isnan(*value) : !std::isfinite(*value))) {
       ++missing;
       value = nothing;
     }
@@ -101,6 +107,7 @@ MetricRule metric_rule(const std::string& name, bool chi2_band) {
   MetricRule rule{.name = name, .stored = name == "anees" ? "nees" : name};
   rule.rms = std::find(root_mean_squares.begin(), root_mean_squares.end(), name) !=
              root_mean_squares.end();
+  rule.median = name == "agree_again_s";
   rule.each_subject = name.ends_with("nees");
   rule.per_dimension = name == "anees" || (chi2_band && (name == "nees" || name == "ledger_nees"));
   return rule;

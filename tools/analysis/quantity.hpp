@@ -18,6 +18,7 @@ struct MetricRule {
   std::string stored;          ///< what the database calls what it is made from
   bool per_dimension = false;  ///< divided by the scalar state_dimension
   bool rms = false;            ///< averaged as a root mean square
+  bool median = false;         ///< a time that may never come: infinite values count
   bool each_subject = false;   ///< a measure of consistency: subjects are never averaged
 };
 /// "anees" is nees a dimension; with `chi2_band` so are nees and ledger_nees.
@@ -55,13 +56,14 @@ struct CellRuns {
 /// Reads one metric. Refers to the values it was made with.
 class Reader {
  public:
-  Reader(const Values& values, const MetricRule& rule);
+  /// `keeps_infinite`: infinite values count as values; else as missing.
+  Reader(const Values& values, const MetricRule& rule, bool keeps_infinite = false);
 
   const MetricRule& rule() const { return rule_; }
   /// Null if the database has no values of the metric.
   const Column* column() const { return column_; }
   /// The metric's value in a run of `cell`, NaN if it has none. `missing` grows by the values met
-  /// that are NULL or infinite, and by one if there is no row at all.
+  /// that are NULL or infinite (unless these count), and by one if there is no row at all.
   double value(const CellRuns& cell, std::size_t run, const Place& place,
                std::size_t& missing) const;
   /// Dimension of the state of a run's beliefs; 0 if it was not recorded.
@@ -76,6 +78,7 @@ class Reader {
 
   const Values* values_;
   MetricRule rule_;
+  bool keeps_infinite_;
   const Column* column_;
   const Column* dimension_;
 };

@@ -22,10 +22,12 @@ class Checker {
     if (name == "auto") return std::nullopt;
     if (name == "mean") return Statistic::mean;
     if (name == "rms") return Statistic::rms;
+    if (name == "median") return Statistic::median;
     if (name == "max") return Statistic::largest;
     if (name == "min") return Statistic::smallest;
-    require_that(name == "any",
-                 fmt::format("statistic = '{}'; allowed: auto, mean, rms, max, min, any", name));
+    require_that(
+        name == "any",
+        fmt::format("statistic = '{}'; allowed: auto, mean, rms, median, max, min, any", name));
     return Statistic::any;
   }
 
@@ -45,6 +47,10 @@ class Checker {
     const std::optional<Statistic>& statistic = rules.statistic;
     const bool averages =
         !statistic || *statistic == Statistic::mean || *statistic == Statistic::rms;
+    require_that(!rules.metric.median || !averages,
+                 fmt::format("{} is infinite where it never comes, and has no mean; statistic is "
+                             "median, max or min",
+                             expect.metric));
     if (rules.trend) {
       require_that(!statistic || *statistic == Statistic::mean,
                    "a trend is the mean of its repetitions' slopes; leave statistic out");
@@ -81,6 +87,10 @@ class Checker {
 
 }  // namespace
 
+bool ClaimRules::keeps_infinite() const {
+  return !trend && statistic && *statistic != Statistic::mean && *statistic != Statistic::rms;
+}
+
 bool ClaimRules::is_rms(const MetricRule& rule) const {
   if (log10 || trend) return false;
   return statistic ? *statistic == Statistic::rms : rule.rms;
@@ -106,6 +116,7 @@ ClaimRules rules_of(const Study& study, const Claim& claim) {
   // An exponent is the slope of logarithms.
   rules.log10 = expect.scale == "log10" || expect.kind == Kind::falls_as;
   rules.statistic = checker.statistic();
+  if (!rules.statistic && rules.metric.median && !rules.trend) rules.statistic = Statistic::median;
   checker.check(rules);
   return rules;
 }

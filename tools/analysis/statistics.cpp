@@ -1,6 +1,8 @@
 #include "tools/analysis/statistics.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
@@ -188,6 +190,31 @@ Interval difference_of_rms(std::span<const double> a, std::span<const double> b,
   }
   const double half = t_quantile(a.size(), alpha) * error_of(influences, scale);
   return {estimate, estimate - half, estimate + half};
+}
+
+Interval median(std::span<const double> values, double alpha) {
+  require(!values.empty(), "an interval needs at least one value");
+  require(alpha > 0.0 && alpha < 1.0, "alpha must be in (0, 1)");
+  std::vector<double> sorted(values.begin(), values.end());
+  for (const double value : sorted) require(!std::isnan(value), "values must be numbers");
+  std::sort(sorted.begin(), sorted.end());
+  const std::size_t n = sorted.size();
+  const double below = sorted[(n - 1) / 2];
+  const double above = sorted[n / 2];
+  Interval result{below == above ? below : 0.5 * (below + above), -infinity, infinity};
+  // The median lies below the k-th smallest if fewer than k values do: a binomial of n halves.
+  const boost::math::binomial_distribution<double, Policy> halves(static_cast<double>(n), 0.5);
+  std::size_t k = 0;  // the largest with P(fewer than k) at most alpha / 2
+  for (std::size_t step = std::bit_floor(n); step > 0; step /= 2) {
+    const std::size_t candidate = k + step;
+    if (candidate > n / 2) continue;
+    if (cdf(halves, static_cast<double>(candidate - 1)) <= 0.5 * alpha) k = candidate;
+  }
+  if (k > 0) {
+    result.low = sorted[k - 1];
+    result.high = sorted[n - k];
+  }
+  return result;
 }
 
 Interval share(std::size_t successes, std::size_t n, double alpha) {

@@ -12,11 +12,12 @@
 // as a gamma variable of any shape, mean^(-1/3) is the power whose studentized statistic has no
 // skewness to order 1/√n; at alpha = 1e-4 and 100 repetitions it misses about twice as often as it
 // says. The bootstrap serves as a cross-check in the tests.
+//   medians (of times that may never come)                          order statistics
 //
-// `alpha` is in (0, 1) everywhere, two-sided. Values must be finite; paired spans are of one
-// length. @throws BrokenInvariant otherwise, and for no values at all. From one value no width
-// is known: the interval then is as wide as the quantity's range, (−∞, ∞) or [0, ∞). Values that
-// are all equal (to rounding) give an interval of width zero.
+// `alpha` is in (0, 1) everywhere, two-sided. Values must be finite (but for medians); paired spans
+// are of one length. @throws BrokenInvariant otherwise, and for no values at all. From one value no
+// width is known: the interval then is as wide as the quantity's range, (−∞, ∞) or [0, ∞). Values
+// that are all equal (to rounding) give an interval of width zero.
 #pragma once
 
 #include <cstddef>
@@ -58,6 +59,11 @@ struct Factor {
 /// Product of the factors over paired values, t on its logarithm. Undefined (NaN, −∞ … ∞) unless
 /// every aggregate is positive.
 Interval product(std::span<const Factor> factors, double alpha);
+
+/// Median of values that may be infinite (not NaN), with the interval between two order statistics
+/// that holds it with at least 1 − alpha whatever the law of the values: (−∞, ∞) where so few
+/// values cannot. The mean of the two middle values where their number is even.
+Interval median(std::span<const double> values, double alpha);
 
 /// Share of successes in n ≥ 1 trials with Wilson's interval.
 Interval share(std::size_t successes, std::size_t n, double alpha);

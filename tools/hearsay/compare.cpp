@@ -11,8 +11,10 @@ namespace hearsay::program {
 namespace {
 
 nlohmann::ordered_json to_json(const analysis::Interval& interval) {
+  // As in the reports of claims: a time that never comes is not one that is unknown.
   const auto number = [](double value) {
-    return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
+    if (std::isinf(value)) return nlohmann::ordered_json(value > 0.0 ? "inf" : "-inf");
+    return std::isnan(value) ? nlohmann::ordered_json() : nlohmann::ordered_json(value);
   };
   return {{"estimate", number(interval.estimate)},
           {"low", number(interval.low)},

@@ -11,6 +11,8 @@ namespace {
 using Kind = Expectation::Kind;
 using testing::HasSubstr;
 
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
 Value text(const char* label) { return std::string(label); }
 
 TEST(WhatIsLeftOut, FailedAndAbsentRunsAreNotedAndPairsStillMatch) {
@@ -59,6 +61,76 @@ TEST(WhatIsLeftOut, MissingValuesAreCounted) {
   EXPECT_EQ(result.verdict, Verdict::reproduced);
   EXPECT_EQ(result.missing_values, 3u);
   EXPECT_EQ(result.repetitions, 7);
+}
+
+/// Of ten repetitions three never agree: without them the times would be 1 … 7 s.
+struct Times : Bed {
+  Times() : Bed(10, 1) {
+    axis("rule", {text("slow"), text("quick")});
+    fill([](const Asked& asked, Rows& rows) {
+      const bool slow = asked.labels.at("rule") == "slow";
+      const double time_s = slow && asked.repetition > 7 ? infinity : asked.repetition;
+      rows.scalar(central_agent, "agree_again_s", slow ? time_s : 0.5);
+      rows.scalar(0, "reach_gap_max", slow && asked.repetition == 9 ? infinity : 0.0);
+      return Outcome::finished;
+    });
+  }
+  ClaimResult judge_slow(Expectation expect) {
+    expect.agents = "central";
+    expect.where["rule"] = {text("slow")};
+    return judge(expect);
+  }
+};
+
+TEST(WhatIsLeftOut, TimesThatNeverComeAreNot) {
+  Times bed;
+  const ClaimResult within = bed.judge_slow(at_most("agree_again_s", 7.0));
+  EXPECT_EQ(within.verdict, Verdict::undecided);
+  EXPECT_EQ(within.quantity, "median of agree_again_s");
+  EXPECT_EQ(within.worst.estimate, 5.5);
+  EXPECT_EQ(within.worst.low, 2.0);
+  EXPECT_EQ(within.worst.high, infinity);
+  EXPECT_EQ(within.missing_values, 0u);
+  EXPECT_EQ(within.repetitions, 10);
+  EXPECT_THAT(within.note, HasSubstr("infinite values, which count: 3"));
+  Expectation worst = at_most("agree_again_s", 1e9);
+  worst.statistic = "max";
+  EXPECT_EQ(bed.judge_slow(worst).verdict, Verdict::not_reproduced);
+  EXPECT_EQ(bed.judge_slow(at_most("agree_again_s", 1.5)).verdict, Verdict::not_reproduced);
+  EXPECT_EQ(bed.judge_slow(at_least("agree_again_s", 2.0)).verdict, Verdict::reproduced);
+}
+
+TEST(WhatIsLeftOut, TimesThatNeverComeAreLaterThanAllOthers) {
+  Times bed;
+  Expectation later = expects("agree_again_s", Kind::greater_than);
+  later.than["rule"] = {text("quick")};
+  const ClaimResult result = bed.judge_slow(later);
+  EXPECT_EQ(result.verdict, Verdict::reproduced);
+  EXPECT_EQ(result.quantity, "median difference of agree_again_s");
+  EXPECT_EQ(result.worst.estimate, 5.0);
+  EXPECT_EQ(result.repetitions, 10);
+  Expectation itself = expects("agree_again_s", Kind::greater_than);
+  itself.than_agent = "central";
+  EXPECT_EQ(bed.judge_slow(itself).worst.estimate, 0.0);
+  const auto rows = compare(bed.file(), {.metric = "agree_again_s",
+                                         .by = "rule",
+                                         .baseline = "quick",
+                                         .agents = "central"});
+  EXPECT_EQ(rows.at(0).verdict, "higher");
+  EXPECT_EQ(rows.at(0).pairs, 10);
+  EXPECT_EQ(rows.at(0).difference.estimate, 5.0);
+}
+
+TEST(WhatIsLeftOut, AnInfiniteGapIsTheLargest) {
+  Times bed;
+  Expectation exact = at_most("reach_gap_max", 1e-9);
+  exact.statistic = "max";
+  const ClaimResult result = bed.judge(exact);
+  EXPECT_EQ(result.verdict, Verdict::not_reproduced);
+  EXPECT_EQ(result.missing_values, 0u);
+  EXPECT_EQ(result.worst.estimate, infinity);
+  Expectation mean = at_most("reach_gap_max", 1e-9);
+  EXPECT_EQ(bed.judge(mean).missing_values, 1u);
 }
 
 TEST(WhatIsLeftOut, WithoutAnyValueNothingIsDecided) {

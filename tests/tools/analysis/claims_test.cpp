@@ -256,8 +256,11 @@ TEST(Claims, WhatHasNoMeaningIsRefusedWithItsLine) {
   expect.where["rul"] = {Value(std::string("naive"))};
   refused(expect, "no axis 'rul'");
   expect = at_most("length", 1.0);
-  expect.statistic = "median";
-  refused(expect, "median");
+  expect.statistic = "mode";
+  refused(expect, "mode");
+  expect = at_most("agree_again_s", 1.0);
+  expect.statistic = "mean";
+  refused(expect, "agree_again_s is infinite where it never comes");
   refused(expects("length", Kind::less_than), "compared with nothing");
   refused(banded("length", Kind::within), "not of length");
   expect = banded("anees", Kind::within);

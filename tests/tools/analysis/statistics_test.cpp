@@ -98,6 +98,29 @@ TEST(Statistics, ARatioToZeroIsUndefined) {
   EXPECT_TRUE(std::isnan(ratio_of_means(Values{1, 2}, Values{1, -1}, 0.05).estimate));
 }
 
+TEST(Statistics, TheMediansIntervalIsBetweenOrderStatistics) {
+  // Of 10 values the 2nd and the 9th: P(fewer than 2 of 10 halves) = 11/1024 ≤ 0.025; 56/1024 is
+  // too much for the 3rd. Of 5 values none are far enough out: 1/32 > 0.025.
+  const std::vector<double> ten = {10, 9, 8, 7, 6, 5, 4, 3, 2, 1};
+  expect_interval(median(ten, 0.05), 5.5, 2.0, 9.0);
+  expect_interval(median(ten, 0.11), 5.5, 3.0, 8.0);  // 2 · 56/1024 = 0.109
+  const std::vector<double> five = {3, 1, 2, 5, 4};
+  EXPECT_EQ(median(five, 0.05).estimate, 3.0);
+  EXPECT_EQ(median(five, 0.05).low, -infinity);
+  EXPECT_EQ(median(five, 0.05).high, infinity);
+  expect_interval(median(five, 0.07), 3.0, 1.0, 5.0);  // 2/32 = 0.0625
+}
+
+TEST(Statistics, TheMedianBearsValuesThatNeverCome) {
+  const std::vector<double> few = {1, 2, 3, 4, 5, 6, 7, infinity, infinity, infinity};
+  EXPECT_EQ(median(few, 0.05).estimate, 5.5);
+  EXPECT_EQ(median(few, 0.05).low, 2.0);
+  EXPECT_EQ(median(few, 0.05).high, infinity);
+  const std::vector<double> most = {1, 2, infinity, infinity, infinity};
+  EXPECT_EQ(median(most, 0.07).estimate, infinity);
+  EXPECT_EQ(median(most, 0.07).low, 1.0);
+}
+
 TEST(Statistics, WilsonsIntervalHasItsPublishedValues) {
   expect_interval(share(8, 10, 0.05), 0.8, 0.490162, 0.943318);
   EXPECT_EQ(share(10, 10, 0.05).high, 1.0);

@@ -92,6 +92,7 @@ void add_reproduce(CLI::App& app, const Catalog& catalog, Action& action) {
   CLI::App* verb = add_verb(app, "reproduce", "Redo studies: runs, figures, tables, claims report",
                             "  hearsay reproduce rumour\n"
                             "  hearsay reproduce rumour/trees --strict\n"
+                            "  hearsay reproduce rumour/dropouts   (all called dropouts-…)\n"
                             "  hearsay reproduce mrclam --data ~/mrclam6\n"
                             "  hearsay reproduce --out /tmp/results");
   verb->add_option("what", options->what, "Theme, or theme/study (default: everything)");

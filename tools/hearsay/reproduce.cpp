@@ -59,7 +59,29 @@ std::string study_name(const fs::path& study) {
   return name.substr(0, name.find('.'));
 }
 
-/// "rumour" is a theme, "rumour/trees" one of its studies, "" everything.
+/// "dropouts" means the study of that name; if there is none, all called "dropouts-…".
+std::vector<fs::path> chosen_studies(const fs::path& folder, const std::string& only) {
+  const std::vector<fs::path> all = studies_of(folder);
+  if (only.empty()) return all;
+  std::vector<fs::path> exact, family;
+  for (const fs::path& study : all) {
+    if (study_name(study) == only) exact.push_back(study);
+    if (study_name(study).starts_with(only + "-")) family.push_back(study);
+  }
+  return exact.empty() ? family : exact;
+}
+
+/// What may stand behind "rumour/".
+std::string study_names_of(const fs::path& folder) {
+  std::string text;
+  for (const fs::path& study : studies_of(folder)) {
+    text += (text.empty() ? "" : ", ") + folder.filename().string() + "/" + study_name(study);
+  }
+  return text;
+}
+
+/// "rumour" is a theme, "rumour/trees" one of its studies, "rumour/dropouts" several of one family,
+/// "" everything.
 std::vector<Target> targets(const ReproduceVerb& verb) {
   const fs::path scenarios = share_directory() / "scenarios";
   const std::vector<fs::path> known = themes(scenarios);
@@ -67,17 +89,16 @@ std::vector<Target> targets(const ReproduceVerb& verb) {
   const std::string only =
       verb.what.find('/') == std::string::npos ? "" : verb.what.substr(verb.what.find('/') + 1);
   std::vector<Target> chosen;
+  std::string there_are = names_of(known);
   for (const fs::path& folder : known) {
     if (!theme.empty() && folder.filename() != theme) continue;
-    for (const fs::path& study : studies_of(folder)) {
-      if (only.empty() || study_name(study) == only) {
-        chosen.push_back({study, fs::path(verb.out) / folder.filename()});
-      }
+    for (const fs::path& study : chosen_studies(folder, only)) {
+      chosen.push_back({study, fs::path(verb.out) / folder.filename()});
     }
+    if (chosen.empty()) there_are = study_names_of(folder);
   }
   if (chosen.empty()) {
-    throw InputError("nothing to reproduce is called '" + verb.what +
-                     "'; there are: " + names_of(known));
+    throw InputError("nothing to reproduce is called '" + verb.what + "'; there are: " + there_are);
   }
   return chosen;
 }

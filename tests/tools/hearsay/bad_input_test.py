@@ -143,6 +143,8 @@ class BadCommandLine(Bed):
 
     def test_an_unknown_theme(self):
         self.bad("there are: mrclam, rumour", "reproduce", "rumor")
+        self.bad("'rumour/tree'; there are: rumour/dropouts-bitrate, rumour/dropouts-bursts", "reproduce",
+                 "rumour/tree")
 
     def test_a_log_that_was_not_given(self):
         self.bad("--data DIR", "reproduce", "mrclam")

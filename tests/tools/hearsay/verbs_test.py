@@ -1,11 +1,12 @@
 """What each verb prints and leaves behind."""
 import csv
 import json
+import os
 import sqlite3
 import subprocess
 import unittest
 
-from bed import SOURCE, Bed
+from bed import RING, SOURCE, Bed
 
 
 class Verbs(Bed):
@@ -143,6 +144,23 @@ class Verbs(Bed):
         report = json.loads((self.dir / "results/rumour/trees-claims.json").read_text())
         claims = report["claims"] if isinstance(report, dict) else report
         self.assertEqual([c["verdict"] for c in claims], ["reproduced"] * 3)
+
+    def test_a_family_of_studies_is_reproduced_by_its_common_name(self):
+        theme = self.dir / "share/scenarios/rings"
+        theme.mkdir(parents=True)
+        (theme / "ring.toml").write_text(RING)
+        for name in ["cuts-one", "cuts-two", "cutsthree", "exact", "exact-more"]:
+            (theme / f"{name}.study.toml").write_text('scenario = "ring.toml"\nrepetitions = 2\n')
+
+        def reproduced(what):
+            text = self.good("reproduce", what, "--out", "results",
+                             env={**os.environ, "HEARSAY_SHARE": str(self.dir / "share")})
+            return [line.split(":")[0] for line in text.splitlines() if " runs, " in line]
+
+        self.assertEqual(reproduced("rings/cuts"), ["cuts-one", "cuts-two"])
+        self.assertEqual(reproduced("rings/cuts-two"), ["cuts-two"])
+        self.assertEqual(reproduced("rings/exact"), ["exact"])
+        self.assertEqual(len(reproduced("rings")), 5)
 
     def test_shipped_files_are_in_order(self):
         files = sorted(str(f) for f in (SOURCE / "scenarios").rglob("*.toml"))

@@ -30,8 +30,9 @@ constexpr std::array<RuleInfo, 7> table = {{
      exact_ledger, "Merino 2007, Alg. 3.4, eq. 3.36-3.40"},
     {Rule::channel_robust, "channel-robust", Sends::belief_less_heard, Memory::last_heard,
      "a tree; messages may be lost, doubled, reordered or cross",
-     "exact there, up to messages under way; loops count twice and more", exact_ledger,
-     "cumulative form of Merino 2007, Alg. 3.4"},
+     "exact there, up to messages under way; loops count twice and more; what a neighbour said "
+     "before it lost its memory is given back, not counted twice",
+     exact_ledger, "cumulative form of Merino 2007, Alg. 3.4"},
     {Rule::ci_det, "ci-det", Sends::belief, Memory::nothing,
      "both beliefs are conservative; nothing about what they share",
      "always, for any correlation; price: independent information is not added", exact_ledger,

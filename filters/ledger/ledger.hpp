@@ -87,7 +87,9 @@ std::optional<gaussian::Matrix> true_covariance(const gaussian::Matrix& omega, c
 
 /// The central filter over exactly the measurements in `ledger.reach()`, and how far `belief` is
 /// from it: max(‖ΔΩ‖/‖Ω‖, ‖Δξ‖/‖ξ‖), Frobenius, relative to the central filter; 0 if both are
-/// empty, infinite if the belief is not finite or only the central filter is empty.
+/// empty, infinite if the belief is not finite or only the central filter is empty. Reach only
+/// grows (but for who forgets everything): a belief that gives back what it had been told, as
+/// under channel-robust when a neighbour comes back without its memory, has a gap from then on.
 double reach_gap(const gaussian::Belief& belief, const Ledger& ledger, const MeasurementBook& book);
 
 }  // namespace hearsay

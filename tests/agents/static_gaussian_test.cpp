@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "sim/kernel/random.hpp"
 
@@ -160,6 +162,93 @@ TEST(StaticGaussianEstimator, WeightsTimesMeasurementsGiveTheBeliefUnderEveryRul
     }
     EXPECT_NEAR(sum, omega(pair.a), 1e-9 * size) << rule.name;
   }
+}
+
+/// Three on a line, 0 – 1 – 2, with one measurement each, of information 1, 2 and 4. All has been
+/// told in turn: everybody's information is 7.
+class Line {
+ public:
+  explicit Line(Rule rule) : rule_(rule) {
+    const auto with = [&](std::vector<AgentId> neighbours) {
+      agents.emplace_back(
+          StaticGaussianEstimator::Options{
+              .rule = rule, .subjects = 1, .dimension = 1, .ledgers = &pool_},
+          neighbours);
+    };
+    with({1});
+    with({0, 2});
+    with({1});
+    for (std::size_t i = 0; i < 3; ++i) agents[i].measured(0, scalar(1 << i, 0), i);
+    for (const AgentId speaker : {0, 2, 1}) talk(speaker);
+  }
+
+  Letter post(AgentId from, AgentId to) {
+    const bool each = gaussian::info(rule_).sends == gaussian::Sends::belief_less_heard;
+    return Pair::post(agents[static_cast<std::size_t>(from)], each ? to : no_agent);
+  }
+  void hear(AgentId from, AgentId to, const Letter& letter) {
+    agents[static_cast<std::size_t>(to)].heard(from, letter.bytes, letter.rider.get());
+  }
+  /// Says what there is to say to all neighbours, who hear it.
+  void talk(AgentId from) {
+    for (AgentId to = from == 0 ? 1 : from - 1; to <= std::min(from + 1, 2); to += 2) {
+      hear(from, to, post(from, to));
+    }
+  }
+  std::vector<double> weights(std::size_t agent) const {
+    std::vector<double> found;
+    for (std::size_t k = 0; k < 4; ++k) found.push_back(weight(agents[agent], k));
+    return found;
+  }
+
+  std::vector<StaticGaussianEstimator> agents;
+
+ private:
+  Rule rule_;
+  LedgerPool pool_;
+};
+
+TEST(StaticGaussianEstimator, ChannelRobustGivesBackWhatANeighbourSaidBeforeItForgot) {
+  Line line(Rule::channel_robust);
+  for (std::size_t i = 0; i < 3; ++i) ASSERT_DOUBLE_EQ(omega(line.agents[i]), 7.0);
+  const Letter old = line.post(1, 0);  // under way when the middle one fails
+  line.agents[1].forget();
+  EXPECT_DOUBLE_EQ(omega(line.agents[1]), 0.0);
+  line.agents[1].measured(0, scalar(8, 0), 3);
+  line.talk(1);
+  // The new message stands for all that the old ones said: also what had come through it.
+  EXPECT_EQ(line.weights(0), (std::vector<double>{1, 0, 0, 1}));
+  EXPECT_EQ(line.weights(2), (std::vector<double>{0, 0, 1, 1}));
+  line.hear(1, 0, old);
+  EXPECT_EQ(line.agents[0].counts().refused, 1u);
+  // What came through it comes again; its own old measurement is gone for good. Nothing is twice.
+  for (const AgentId speaker : {0, 2, 1}) line.talk(speaker);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_DOUBLE_EQ(omega(line.agents[i]), 1.0 + 4.0 + 8.0) << i;
+    EXPECT_EQ(line.weights(i), (std::vector<double>{1, 0, 1, 1})) << i;
+  }
+}
+
+TEST(StaticGaussianEstimator, ChannelCountsTwiceWhatItsNeighboursTellItAfterItForgot) {
+  Line line(Rule::channel);
+  line.talk(0);
+  line.talk(2);
+  line.talk(1);
+  for (std::size_t i = 0; i < 3; ++i) ASSERT_DOUBLE_EQ(omega(line.agents[i]), 7.0);
+  line.agents[1].forget();
+  line.talk(0);
+  EXPECT_EQ(line.weights(1), (std::vector<double>{1, 1, 1, 0}));
+  line.talk(2);
+  EXPECT_EQ(line.weights(1), (std::vector<double>{2, 2, 2, 0}));
+}
+
+TEST(StaticGaussianEstimator, CovarianceIntersectionHearsAfterItForgotWhatItHadSaid) {
+  Line line(Rule::ci_det);
+  const double known = omega(line.agents[0]);
+  ASSERT_DOUBLE_EQ(known, 4.0);  // the best of the three
+  line.agents[1].forget();
+  line.talk(0);
+  EXPECT_DOUBLE_EQ(omega(line.agents[1]), known);
 }
 
 TEST(StaticGaussianEstimator, RefusesWhatIsMalformedOrFromAStranger) {

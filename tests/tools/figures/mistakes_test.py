@@ -5,7 +5,9 @@ import subprocess
 import sys
 import unittest
 
-from small_study import SCRIPTS, WithDatabase, make_database
+from small_study import SCRIPTS, WithDatabase, make_database  # first: it makes the scripts known
+
+import data
 
 
 class Mistakes(WithDatabase):
@@ -36,7 +38,7 @@ class Mistakes(WithDatabase):
         connection.commit()
         self.assertEqual(
             self.refused("mrclam.py", "small.db", "x.png"),
-            "small.db: its schema has version 7, these scripts read 1",
+            f"small.db: its schema has version 7, these scripts read {data.SCHEMA_VERSION}",
         )
         connection.execute("PRAGMA application_id = 0")
         connection.commit()

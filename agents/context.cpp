@@ -4,8 +4,8 @@
 
 namespace hearsay {
 
-Context::Context(Simulation& simulation, Radio& radio, Identity identity)
-    : simulation_(simulation), radio_(radio), identity_(std::move(identity)) {}
+Context::Context(Simulation& simulation, Radio& radio, Identity identity, Service service)
+    : simulation_(simulation), radio_(radio), identity_(std::move(identity)), service_(service) {}
 
 double Context::parameter(const std::string& name, double otherwise) const {
   const auto found = identity_.parameters.find(name);
@@ -18,6 +18,27 @@ Stream Context::stream(std::string_view purpose) const {
 
 Stream Context::stream_at(std::string_view purpose, std::uint64_t count) const {
   return simulation_.stream_at(Purpose(purpose), Entity::agent(id()), count);
+}
+
+bool Context::send(const Outgoing& packet) {
+  if (packet.acknowledged) return radio_.send(id(), packet);
+  if (service_.gossip) return service_.gossip->write(packet);
+  if (!service_.acknowledged) return radio_.send(id(), packet);
+  Outgoing safe = packet;
+  safe.acknowledged = true;
+  return packet.receiver == no_agent ? send_to_each(std::move(safe)) : radio_.send(id(), safe);
+}
+
+// Neighbours are copied first: sending may ask for them, too.
+bool Context::send_to_each(Outgoing packet) {
+  const std::span<const AgentId> now = neighbours();
+  listeners_.assign(now.begin(), now.end());
+  bool any = false;
+  for (const AgentId neighbour : listeners_) {
+    packet.receiver = neighbour;
+    any |= radio_.send(id(), packet);
+  }
+  return any;
 }
 
 bool Context::broadcast(std::string_view kind, std::span<const std::byte> bytes) {

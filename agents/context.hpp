@@ -6,7 +6,10 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
+#include "net/gossip.hpp"
 #include "net/radio.hpp"
 #include "sim/kernel/process.hpp"
 #include "sim/kernel/simulation.hpp"
@@ -21,8 +24,15 @@ class Context {
     std::string kind;
     std::map<std::string, double> parameters;  ///< [agents.parameters] of the scenario
   };
-  /// `simulation` and `radio` must outlive the context.
-  Context(Simulation& simulation, Radio& radio, Identity identity);
+  /// How what it says travels; by default straight over the radio.
+  struct Service {
+    bool acknowledged = false;  ///< repeated until acknowledged
+    Gossip* gossip = nullptr;   ///< instead, by store-and-forward or a blackboard; not owned
+  };
+  /// `simulation`, `radio` and the service must outlive the context.
+  Context(Simulation& simulation, Radio& radio, Identity identity, Service service);
+  Context(Simulation& simulation, Radio& radio, Identity identity)
+      : Context(simulation, radio, std::move(identity), Service()) {}
 
   AgentId id() const { return identity_.id; }
   const std::string& name() const { return identity_.name; }
@@ -56,8 +66,15 @@ class Context {
   std::span<const AgentId> neighbours() { return radio_.neighbours(id()); }
   /// True if neighbours() may change over time.
   bool neighbours_change() const { return radio_.neighbours_change(); }
-  /// Hands a packet to the agent's radio. @return false if the transmitter's queue was full.
-  bool send(const Outgoing& packet) { return radio_.send(id(), packet); }
+  /// True if packets may come from others than neighbours() at the start of the run.
+  bool hears_strangers() const { return service_.gossip || radio_.neighbours_change(); }
+  /// Says something by the agent's service (agents.talk.service). Store-and-forward: a bundle; a
+  /// receiver is its addressee, however far. Blackboard: the slot of this kind and subject.
+  /// Acknowledged: what has no receiver goes to each neighbour. Broadcast: a packet. One that asks
+  /// for acknowledgement itself always goes over the radio.
+  /// @return false if nothing of it was taken: the agent is down, its radio's queue or the
+  /// blackboard is full, nobody is there to acknowledge it.
+  bool send(const Outgoing& packet);
   /// The same, to everybody who can hear.
   bool broadcast(std::string_view kind, std::span<const std::byte> bytes);
 
@@ -71,9 +88,13 @@ class Context {
   Simulation& simulation() { return simulation_; }
 
  private:
+  bool send_to_each(Outgoing packet);
+
   Simulation& simulation_;
   Radio& radio_;
   Identity identity_;
+  Service service_;
+  std::vector<AgentId> listeners_;  // of what is being said
 };
 
 }  // namespace hearsay

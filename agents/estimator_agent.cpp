@@ -13,7 +13,7 @@ EstimatorAgent::EstimatorAgent(Context& context, Witness& witness, Options optio
                   .dimension = options_.dimension,
                   .ledgers = witness.ledgers(),
                   .workspace = &witness.workspace(),
-                  .strangers = context.neighbours_change()},
+                  .strangers = context.hears_strangers()},
                  context.neighbours()),
       message_kind_(context.simulation().record().name("gaussian")) {
   witness_.watch(context.id(), estimator_);
@@ -77,45 +77,27 @@ Process EstimatorAgent::talk() {
 
 void EstimatorAgent::say(std::uint64_t tick) {
   if (!context().up()) return;
-  using gaussian::Sends;
-  const bool addressed = gaussian::info(options_.rule).sends == Sends::belief_less_heard;
-  if (!addressed && !options_.acknowledged) {
-    say_to(no_agent, tick);
-    return;
+  if (gaussian::info(options_.rule).sends != gaussian::Sends::belief_less_heard) {
+    return say_to(no_agent, tick);
   }
   const std::span<const AgentId> now = context().neighbours();
   listeners_.assign(now.begin(), now.end());
-  if (addressed) {
-    for (const AgentId neighbour : listeners_) say_to(neighbour, tick);
-  } else if (!listeners_.empty()) {
-    say_to_each(tick);
-  }
-}
-
-// One speech, a packet to each listener.
-void EstimatorAgent::say_to_each(std::uint64_t tick) {
-  const StaticGaussianEstimator::Speech speech = estimator_.speech(no_agent);
-  if (speech.bytes.empty()) return;
-  bool any = false;
-  for (const AgentId neighbour : listeners_) any |= hand_over(neighbour, tick, speech);
-  if (any) estimator_.sent(no_agent);
+  for (const AgentId neighbour : listeners_) say_to(neighbour, tick);
 }
 
 void EstimatorAgent::say_to(AgentId receiver, std::uint64_t tick) {
   const StaticGaussianEstimator::Speech speech = estimator_.speech(receiver);
-  if (!speech.bytes.empty() && hand_over(receiver, tick, speech)) estimator_.sent(receiver);
-}
-
-bool EstimatorAgent::hand_over(AgentId receiver, std::uint64_t tick,
-                               const StaticGaussianEstimator::Speech& speech) {
+  if (speech.bytes.empty()) return;
   Outgoing packet;
   packet.kind = message_kind_;
   packet.bytes = speech.bytes;
   packet.receiver = receiver;
   packet.tick = tick;
   packet.rider = speech.rider;
-  packet.acknowledged = options_.acknowledged;
-  return context().send(packet);
+  // A belief is news of the one before. An update is not: it has what the one before has not.
+  const bool update = gaussian::info(options_.rule).sends == gaussian::Sends::local_update;
+  packet.subject = update ? tick : static_cast<std::uint64_t>(context().id());
+  if (context().send(packet)) estimator_.sent(receiver);
 }
 
 }  // namespace hearsay

@@ -36,7 +36,6 @@ class EstimatorAgent final : public Agent {
     /// Measurements to replay, by time; they outlive the agent.
     std::span<const Observation> observations;
     std::optional<PeriodicTalk> talk;  ///< nothing: never talks
-    bool acknowledged = false;         ///< a packet a neighbour, repeated until acknowledged
   };
   EstimatorAgent(Context& context, Witness& witness, Options options);
 
@@ -53,9 +52,6 @@ class EstimatorAgent final : public Agent {
   Process talk();
   void say(std::uint64_t tick);
   void say_to(AgentId receiver, std::uint64_t tick);
-  void say_to_each(std::uint64_t tick);
-  bool hand_over(AgentId receiver, std::uint64_t tick,
-                 const StaticGaussianEstimator::Speech& speech);
 
   Witness& witness_;
   Options options_;

@@ -22,6 +22,7 @@ class Checker {
     for (std::size_t i = 0; i < s_.agents.size(); ++i) {
       check_agent(s_.agents[i], agents_[i]);
     }
+    check_services(file_);
     check_motion(file_);
     check_radio(file_);
     check_agreement();

@@ -27,6 +27,10 @@ inline std::vector<std::string> fusion_names() {
   return names;
 }
 
+inline std::vector<std::string> service_names() {
+  return {"broadcast", "acknowledged", "store-and-forward", "blackboard"};
+}
+
 template <class V>
 void describe(V& v, TargetSpec& s) {
   v.field("name", s.name, anything(), "its name in records; default target<i>");
@@ -87,8 +91,7 @@ void describe(V& v, TalkSpec& s) {
   v.field("phase", s.phase, one_of({"random", "staggered", "together"}),
           "first sending: at random, agent i of n at i·period/n, or all at once");
   v.field("phase_s", s.phase_s, time_span(true), "first sending of this agent, below the period");
-  v.field("acknowledged", s.acknowledged, one_of({"on", "off"}),
-          "one packet a neighbour, each repeated until acknowledged, instead of a broadcast");
+  v.field("service", s.service, one_of(service_names()), "how what it says travels");
 }
 
 template <class V>

@@ -43,6 +43,22 @@ void describe(V& v, AcknowledgementSpec& s) {
 }
 
 template <class V>
+void describe(V& v, GossipSpec& s) {
+  v.field("summary_period_s", s.summary_period_s, time_span(false),
+          "an agent tells so often what it holds, so that others send what it lacks");
+  v.field("summary_bytes_max", s.summary_bytes_max, between(128, 65535),
+          "of a summary; the rest is in the next one");
+  v.field("answers_max", s.answers_max, between(1, 65535),
+          "packets sent in answer to a summary; the rest is sent in answer to later ones");
+  v.field("buffer_packets_max", s.buffer_packets_max, between(1, 1e6),
+          "held by an agent; bundles: the oldest makes room, slots: there is none for a new one");
+  v.field("hops_max", s.hops_max, between(1, 255),
+          "\"store-and-forward\": from agent to agent at most so often");
+  v.field("lifetime_s", s.lifetime_s, time_span(false),
+          "\"store-and-forward\": who is older is not delivered or held; default: no end");
+}
+
+template <class V>
 void describe(V& v, RadioSpec& s) {
   v.field("topology", s.topology,
           one_of({"line", "ring", "star", "full", "binary-tree", "grid", "erdos-renyi",
@@ -87,6 +103,7 @@ void describe(V& v, RadioSpec& s) {
           "whether who sends is deaf; default: on if the channel is shared");
   v.table("sharing", s.sharing, "how radios share the channel");
   v.table("acknowledgement", s.acknowledgement, "for packets that are to be acknowledged");
+  v.table("gossip", s.gossip, "for the services \"store-and-forward\" and \"blackboard\"");
   v.field("latency_s", s.latency_s, time_span(true), "from the last bit sent to arrival");
   v.field("propagation_m_per_s", s.propagation_m_per_s, greater_than_zero(),
           "where links have lengths: arrival is later by length / speed; default: by nothing");

@@ -5,8 +5,12 @@
 namespace hearsay {
 
 Life::Life(Simulation& simulation, Radio& radio, std::vector<std::unique_ptr<Agent>>& agents,
-           Dropouts dropouts)
-    : simulation_(simulation), radio_(radio), agents_(agents), dropouts_(std::move(dropouts)) {
+           std::vector<std::unique_ptr<Gossip>>& gossips, Dropouts dropouts)
+    : simulation_(simulation),
+      radio_(radio),
+      agents_(agents),
+      gossips_(gossips),
+      dropouts_(std::move(dropouts)) {
   rows_.resize(dropouts_.agents().size());
 }
 
@@ -45,6 +49,8 @@ void Life::come_up(std::size_t row) {
   simulation_.record().event(simulation_.now(), outage.agent, "up",
                              outage.forgets ? "without memory" : "");
   radio_.set_up(outage.agent, true);
+  Gossip* const gossip = gossips_[static_cast<std::size_t>(outage.agent)].get();
+  if (gossip && outage.forgets) gossip->forget();
   agents_[static_cast<std::size_t>(outage.agent)]->on_up(outage.forgets);
   await(row);
 }

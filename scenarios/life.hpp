@@ -13,9 +13,9 @@ namespace hearsay {
 /// "up without memory").
 class Life {
  public:
-  /// All outlive this; `agents` by number.
+  /// All outlive this; `agents` and what carries their words (null: the radio) by number.
   Life(Simulation& simulation, Radio& radio, std::vector<std::unique_ptr<Agent>>& agents,
-       Dropouts dropouts);
+       std::vector<std::unique_ptr<Gossip>>& gossips, Dropouts dropouts);
   ~Life();
   Life(const Life&) = delete;
   Life& operator=(const Life&) = delete;
@@ -35,6 +35,7 @@ class Life {
   Simulation& simulation_;
   Radio& radio_;
   std::vector<std::unique_ptr<Agent>>& agents_;
+  std::vector<std::unique_ptr<Gossip>>& gossips_;
   Dropouts dropouts_;
   std::vector<Row> rows_;  // of those who may fail
 };

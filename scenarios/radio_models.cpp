@@ -26,13 +26,34 @@ Models transmitters() {
       {"queue", "drop-oldest", by, "a full queue drops who has waited longest", bounds, ""},
       {"queue", "replace", by,
        "a newer packet of the same kind, receiver and subject takes the place of one that waits",
-       bounds, "age of information: S. Kaul, R. Yates, M. Gruteser, INFOCOM 2012"},
-      {"service",
-       "acknowledged",
-       "",
-       "a packet to one hearer is repeated until its acknowledgement comes back",
-       {"agents.talk.acknowledged", "radio.acknowledgement."},
-       "stop-and-wait: A. S. Tanenbaum, Computer networks"}};
+       bounds, "age of information: S. Kaul, R. Yates, M. Gruteser, INFOCOM 2012"}};
+}
+
+Models services() {
+  const std::string by = "agents.talk.service";
+  const std::vector<std::string> both = {
+      "radio.gossip.summary_period_s", "radio.gossip.summary_bytes_max", "radio.gossip.answers_max",
+      "radio.gossip.buffer_packets_max"};
+  std::vector<std::string> bundles = both;
+  bundles.emplace_back("radio.gossip.hops_max");
+  bundles.emplace_back("radio.gossip.lifetime_s");
+  return {{"service", "broadcast", by, "one packet to whoever hears it", {}, ""},
+          {"service",
+           "acknowledged",
+           by,
+           "a packet to each neighbour, repeated until its acknowledgement comes back",
+           {"radio.acknowledgement."},
+           "stop-and-wait: A. S. Tanenbaum, Computer networks"},
+          {"service", "store-and-forward", by,
+           "a bundle is held and passed on by all it reaches, also when links come up later or a "
+           "carrier comes by, and delivered once",
+           bundles, "epidemic routing: A. Vahdat, D. Becker, Duke CS-200006, 2000"},
+          {"service", "blackboard", by,
+           "named slots of which each agent holds a copy; the last version wins, and lost ones are "
+           "repaired",
+           both,
+           "the blackboard of the COMETS fleet: V. Remuss, M. Musial, EMAV 2004; versions: "
+           "P. R. Johnson, R. H. Thomas, RFC 677, 1975"}};
 }
 
 Models sharings() {
@@ -256,8 +277,8 @@ const std::vector<RadioModelInfo>& radio_models() {
   static const Models all = [] {
     Models models;
     // A new part of the network, or a new model of a part, is added here and shown everywhere.
-    for (const auto part :
-         {transmitters, sharings, latencies, propagations, losses, topologies, faults, motions}) {
+    for (const auto part : {transmitters, services, sharings, latencies, propagations, losses,
+                            topologies, faults, motions}) {
       Models of_part = part();
       std::move(of_part.begin(), of_part.end(), std::back_inserter(models));
     }
@@ -278,10 +299,11 @@ std::vector<KeyInfo> parameters(const RadioModelInfo& model) {
 }
 
 std::string unit_of(std::string_view key) {
-  constexpr std::array<std::pair<std::string_view, const char*>, 10> units = {
+  constexpr std::array<std::pair<std::string_view, const char*>, 11> units = {
       {{"_m_per_s", "m/s"},
        {"_bps", "bit/s"},
        {"_bytes", "bytes"},
+       {"_bytes_max", "bytes"},
        {"_packets_max", "packets"},
        {"mean_burst", "packets"},
        {"_dbm", "dBm"},

@@ -37,6 +37,23 @@ struct AcknowledgementSpec {
   int attempts_max = 7;       ///< 1 … 1000
 };
 
+/// For the services store-and-forward and blackboard.
+struct GossipSpec {
+  double summary_period_s = 1.0;     ///< > 0
+  int summary_bytes_max = 1024;      ///< 128 … 65535
+  int answers_max = 16;              ///< 1 … 65535
+  int buffer_packets_max = 256;      ///< 1 … 1e6
+  int hops_max = 255;                ///< 1 … 255
+  std::optional<double> lifetime_s;  ///< > 0; none: no end
+};
+
+/// True for the services that these are for.
+inline bool is_gossip(const std::string& service) {
+  return service == "store-and-forward" || service == "blackboard";
+}
+/// The most that they put before a message, in bytes.
+inline constexpr std::size_t gossip_header_bytes = 28;
+
 struct RadioSpec {
   /// "line" | "ring" | "star" | "full" | "binary-tree" | "grid" | "erdos-renyi" | "small-world" |
   /// "random-geometric" | "edges" | "contacts" | "disk" | "by-position"
@@ -64,6 +81,7 @@ struct RadioSpec {
   std::optional<std::string> half_duplex;  ///< "on" | "off"; default: on if the channel is shared
   SharingSpec sharing;
   AcknowledgementSpec acknowledgement;
+  GossipSpec gossip;
   double latency_s = 0.0;  ///< ≥ 0
   JitterSpec jitter;
   /// > 0, where links have lengths: the way to a hearer takes length / speed; none: no time

@@ -211,20 +211,27 @@ void Run::build_agents(const Catalog& catalog) {
     const AgentSpec& spec = *prepared_->specs[i];
     const auto id = static_cast<AgentId>(i);
     record.agent(id, prepared_->names[i], spec.kind);
-    contexts_.push_back(
-        std::make_unique<Context>(simulation_, *radio_,
-                                  Context::Identity{.id = id,
-                                                    .name = prepared_->names[i],
-                                                    .kind = spec.kind,
-                                                    .parameters = spec.parameters}));
+    gossips_.push_back(make_gossip(scenario, spec, id, simulation_, *radio_));
+    contexts_.push_back(std::make_unique<Context>(
+        simulation_, *radio_,
+        Context::Identity{.id = id,
+                          .name = prepared_->names[i],
+                          .kind = spec.kind,
+                          .parameters = spec.parameters},
+        Context::Service{.acknowledged = spec.talk.service == "acknowledged",
+                         .gossip = gossips_.back().get()}));
     const auto own = catalog.agents().find(spec.kind);
     agents_.push_back(own == catalog.agents().end() ? make_estimator(id)
                                                     : own->second.make(*contexts_.back()));
-    radio_->attach(id, *agents_.back());
+    if (gossips_.back()) {
+      gossips_.back()->attach(*agents_.back());
+    } else {
+      radio_->attach(id, *agents_.back());
+    }
   }
   Dropouts dropouts = dropouts_of(scenario, simulation_.seed(), prepared_->end);
   if (!dropouts.agents().empty()) {
-    life_ = std::make_unique<Life>(simulation_, *radio_, agents_, std::move(dropouts));
+    life_ = std::make_unique<Life>(simulation_, *radio_, agents_, gossips_, std::move(dropouts));
   }
 }
 
@@ -249,7 +256,6 @@ std::unique_ptr<Agent> Run::make_estimator(AgentId id) {
             : talk_phase(talk_phase_of(spec.talk.phase), period, id,
                          static_cast<int>(prepared_->specs.size()), simulation_.seed());
     options.talk = PeriodicTalk{.period = period, .phase = phase};
-    options.acknowledged = spec.talk.acknowledged == "on";
   }
   return std::make_unique<EstimatorAgent>(*contexts_[i], *witness_, std::move(options));
 }
@@ -260,6 +266,7 @@ RunEnd Run::run() {
     if (life_) life_->start();
     for (std::size_t i = 0; i < agents_.size(); ++i) {
       simulation_.acting_for(static_cast<AgentId>(i));
+      if (gossips_[i]) gossips_[i]->start();
       agents_[i]->start();
     }
   } catch (...) {
@@ -282,6 +289,7 @@ void Run::keep_record_only() {
   life_.reset();
   agents_.clear();
   contexts_.clear();
+  gossips_.clear();
   radio_.reset();
   movement_.reset();
   witness_.reset();
@@ -315,6 +323,8 @@ void Run::record_radio() {
       scalar(std::string("packets_") + to_string(static_cast<Fate>(f)),
              static_cast<double>(counts.fates[static_cast<std::size_t>(f)]));
     }
+    const Gossip* const gossip = gossips_[static_cast<std::size_t>(id)].get();
+    if (gossip) record_gossip(record, id, gossip->counts());
   }
 }
 

@@ -21,6 +21,7 @@
 #include "scenarios/loader.hpp"
 #include "scenarios/motion.hpp"
 #include "scenarios/scenario.hpp"
+#include "scenarios/services.hpp"
 #include "sim/world/mrclam.hpp"
 
 namespace hearsay {
@@ -95,6 +96,7 @@ class Run {
   std::unique_ptr<Places> places_;
   std::unique_ptr<Movement> movement_;
   std::unique_ptr<Radio> radio_;
+  std::vector<std::unique_ptr<Gossip>> gossips_;  // by agent; null: it talks over the radio alone
   std::vector<std::unique_ptr<Context>> contexts_;
   std::vector<std::unique_ptr<Agent>> agents_;
   std::unique_ptr<Life> life_;

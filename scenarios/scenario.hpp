@@ -56,11 +56,12 @@ struct EstimatorSpec {
 };
 
 struct TalkSpec {
-  std::string policy = "periodic";   ///< "periodic" | "never"
-  double period_s = 5.0;             ///< > 0
-  std::string phase = "random";      ///< "random" | "staggered" | "together"
-  std::optional<double> phase_s;     ///< this agent's own phase instead, in [0, period)
-  std::string acknowledged = "off";  ///< "on" | "off"
+  std::string policy = "periodic";  ///< "periodic" | "never"
+  double period_s = 5.0;            ///< > 0
+  std::string phase = "random";     ///< "random" | "staggered" | "together"
+  std::optional<double> phase_s;    ///< this agent's own phase instead, in [0, period)
+  /// "broadcast" | "acknowledged" | "store-and-forward" | "blackboard"
+  std::string service = "broadcast";
 };
 
 struct AgentSpec {

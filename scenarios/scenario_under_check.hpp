@@ -65,6 +65,10 @@ void check_radio(ScenarioUnderCheck& file);
 /// The part of check_radio() about who hears whom when.
 void check_links(ScenarioUnderCheck& file);
 
+/// Checks that agents' services go with one another and with their rules.
+/// @throws InputError.
+void check_services(ScenarioUnderCheck& file);
+
 /// Checks how agents move, and reads their tracks.
 /// @throws InputError.
 void check_motion(ScenarioUnderCheck& file);

@@ -16,16 +16,25 @@ std::size_t message_bytes_max(const Scenario& scenario) {
   return gaussian::encoded_size(scenario.world.targets.size(), 2);
 }
 
+// What a service makes of a message of so many bytes; its summaries are packets, too.
+std::size_t carried_bytes_max(const Scenario& scenario, std::size_t message) {
+  const std::string& service = scenario.agents.front().talk.service;  // as all others have
+  if (!is_gossip(service)) return message;
+  const auto summary = static_cast<std::size_t>(scenario.radio.gossip.summary_bytes_max);
+  return std::max(summary, message + gossip_header_bytes);
+}
+
 void check_queue(const ScenarioUnderCheck& file, const KeyPath& path) {
   const RadioSpec& radio = file.scenario.radio;
   if (!radio.queue_bytes_max) return;
-  const std::size_t message = message_bytes_max(file.scenario);
+  const std::size_t message = carried_bytes_max(file.scenario, message_bytes_max(file.scenario));
   const auto mtu = static_cast<std::size_t>(radio.mtu_bytes.value_or(1 << 30));
   const std::size_t frames = message == 0 ? 1 : (message - 1) / mtu + 1;
   const std::size_t packet = message + frames * static_cast<std::size_t>(radio.header_bytes);
   if (static_cast<std::size_t>(*radio.queue_bytes_max) >= packet) return;
-  file.fail(path["queue_bytes_max"], "smaller than one packet: a message of all beliefs takes " +
-                                         std::to_string(packet) + " bytes with headers");
+  file.fail(path["queue_bytes_max"],
+            "smaller than one packet: a message of all beliefs, or a summary, takes " +
+                std::to_string(packet) + " bytes with headers");
 }
 
 void check_slots(const ScenarioUnderCheck& file, const KeyPath& path) {
@@ -42,7 +51,7 @@ void check_slots(const ScenarioUnderCheck& file, const KeyPath& path) {
   double frame_s = 8.0 * (*radio.mtu_bytes + radio.header_bytes) / radio.rate_bps;
   const bool acknowledged =
       std::any_of(file.scenario.agents.begin(), file.scenario.agents.end(),
-                  [](const AgentSpec& agent) { return agent.talk.acknowledged == "on"; });
+                  [](const AgentSpec& agent) { return agent.talk.service == "acknowledged"; });
   if (acknowledged) {
     frame_s +=
         radio.acknowledgement.interframe_s + 8.0 * radio.acknowledgement.bytes / radio.rate_bps;
@@ -78,12 +87,6 @@ void check_transmitter(ScenarioUnderCheck& file) {
   }
   if (radio.jitter.law == "none" && radio.jitter.spread_s > 0.0) {
     file.fail(path["jitter"]["spread_s"], "without effect; set radio.jitter.law, too");
-  }
-  for (std::size_t i = 0; i < file.scenario.agents.size(); ++i) {
-    const TalkSpec& talk = file.scenario.agents[i].talk;
-    if (talk.acknowledged == "on" && talk.policy == "never") {
-      file.fail(top["agents"][i]["talk"]["acknowledged"], "without effect: this agent never talks");
-    }
   }
 }
 

@@ -21,7 +21,7 @@ constexpr std::array<RuleInfo, 7> table = {{
     {Rule::local_update, "local-update", Sends::local_update, Memory::nothing,
      "everybody hears everybody's messages, each exactly once",
      "always: no measurement is counted twice; what was lost is missing for ever, and nothing "
-     "travels beyond the first hearer",
+     "travels beyond the first hearer, unless messages are stored and forwarded",
      exact_ledger, "Merino 2007, section 3.2.3"},
     {Rule::channel, "channel", Sends::belief, Memory::last_exchanged,
      "a tree of reliable, ordered links on which beliefs never cross",

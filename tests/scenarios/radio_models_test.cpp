@@ -68,6 +68,7 @@ TEST(RadioModels, TellUnitsByTheEndsOfKeys) {
   EXPECT_EQ(unit_of("radio.propagation_m_per_s"), "m/s");
   EXPECT_EQ(unit_of("radio.rate_bps"), "bit/s");
   EXPECT_EQ(unit_of("radio.header_bytes"), "bytes");
+  EXPECT_EQ(unit_of("radio.queue_bytes_max"), "bytes");
   EXPECT_EQ(unit_of("radio.queue_packets_max"), "packets");
   EXPECT_EQ(unit_of("radio.propagation.noise_dbm"), "dBm");
   EXPECT_EQ(unit_of("radio.propagation.reference_loss_db"), "dB");

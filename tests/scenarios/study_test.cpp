@@ -167,7 +167,8 @@ TEST_F(StudyLoader, AnAxisNeedsAKeyOfTheSchema) {
             "edges, range_m, columns, link_probability, mean_degree, rewire_probability, side_m, "
             "contacts, outages, partitions, rotation, rate_bps, header_bytes, mtu_bytes, "
             "queue_packets_max, queue_bytes_max, queue_policy, queue_wait_max_s, half_duplex, "
-            "sharing, acknowledgement, latency_s, propagation_m_per_s, jitter, loss, propagation, "
+            "sharing, acknowledgement, gossip, latency_s, propagation_m_per_s, jitter, loss, "
+            "propagation, "
             "jammers");
   EXPECT_EQ(error("[set]\n\"radio.latency\" = 1\n").substr(0, 48),
             "s.study.toml:3: unknown key 'radio.latency'; did");

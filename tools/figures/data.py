@@ -305,6 +305,19 @@ class Selection:
             )
         )
 
+    def agents_named(self, beginning):
+        """Numbers of the agents whose names begin so. @raises UserError if there are none."""
+        rows = self._database.rows(
+            "SELECT id, name FROM agent WHERE run = (SELECT MIN(run) FROM temp.chosen) ORDER BY id"
+        )
+        found = [number for number, name in rows if number >= 0 and name.startswith(beginning)]
+        if not found:
+            names = ", ".join(name for number, name in rows if number >= 0)
+            raise UserError(
+                f"{self._database.file}: no agent's name begins with {beginning!r}; there are: {names}"
+            )
+        return found
+
     def scalar(self, name):
         """{agent: array[cell, repetition]} of a scalar; empty if it was not recorded."""
         found = {}

@@ -216,6 +216,32 @@ class Figures(WithDatabase):
         for said in ("100 % of beliefs", "indefinite at the end", "4 paired repetitions"):
             self.assertIn(said, text)
 
+    def mule(self):
+        """The small study as one over services, of agents b0 and c0."""
+        connection = make_database(self.file)
+        connection.execute("UPDATE axis SET name = 'service' WHERE name = 'topology'")
+        connection.execute("CREATE TABLE agent(run, id, name)")
+        for row in ((-1, "central"), (0, "c0"), (1, "b0")):
+            connection.execute("INSERT INTO agent SELECT id, ?, ? FROM run", row)
+        connection.commit()
+        connection.close()
+
+    def test_the_figure_of_the_mule_shows_one_group(self):
+        self.mule()
+        arguments = ("--loss", "0.3", "--visits", "3-5,12-13", "--measured", "20")
+        text = self.draw("mule.py", "a.svg", *arguments).decode()
+        for said in ("my-rule, ring", "the mule is there", "1 agent and 4 paired repetitions"):
+            self.assertIn(said, text)
+        # √((2² + 3² + 4² + 5²)/4)/21 of agent 1, whose error is (repetition + 1)/(1 + t).
+        self.assertIn(f"error {math.sqrt(54 / 4) / 21:.2g} m", text)
+
+    def test_the_figure_of_the_mule_refuses_what_is_not_there(self):
+        self.mule()
+        where = (self.file, "a.svg", "--loss", "0.3")
+        self.assertIn("no agent's name begins with 'x'; there are: c0, b0",
+                      self.refused("mule.py", *where, "--group", "x"))
+        self.assertIn("expected spans in seconds", self.refused("mule.py", *where, "--visits", "9"))
+
     def test_the_caption_says_what_was_chosen(self):
         self.make()
         text = self.draw("rumour.py", "a.svg", "--loss", "0.3").decode()

@@ -244,10 +244,10 @@ TEST_F(Services, AFleetHasOneService) {
 
 TEST_F(Services, WrongValuesAreRefused) {
   EXPECT_EQ(error(seven, {"radio.gossip.hops_max=0"}),
-            "--set radio.gossip.hops_max=0: radio.gossip.hops_max = 0: must be 1 … 255");
-  EXPECT_EQ(
-      error(seven, {"radio.gossip.summary_period_s=0"}),
-      "--set radio.gossip.summary_period_s=0: radio.gossip.summary_period_s = 0: must be > 0");
+            "--set radio.gossip.hops_max=0: radio.gossip.hops_max = 0: must be between 1 and 255");
+  EXPECT_EQ(error(seven, {"radio.gossip.summary_period_s=0"}),
+            "--set radio.gossip.summary_period_s=0: radio.gossip.summary_period_s = 0: must be "
+            "greater than 0");
   const std::string unknown = error(seven, {"agents.talk.acknowledged=on"});
   EXPECT_NE(unknown.find("allowed in [agents.talk]: policy, period_s, phase, phase_s, service"),
             std::string::npos)

@@ -31,7 +31,7 @@ class LinkChecker {
     for (std::size_t i = 0; i < radio_.outages.size(); ++i) {
       check_outage(outages[i], radio_.outages[i]);
     }
-    check_outages_have_links();
+    check_that_links_exist();
     const KeyPath partitions = path_["partitions"];
     for (std::size_t i = 0; i < radio_.partitions.size(); ++i) {
       PartitionSpec& partition = radio_.partitions[i];
@@ -49,7 +49,7 @@ class LinkChecker {
   void check_places() const;
   void resolve_pairs(const KeyPath& path, std::vector<std::array<int, 2>>& pairs) const;
   void check_outage(const KeyPath& path, OutageSpec& outage) const;
-  void check_outages_have_links() const;
+  void check_that_links_exist() const;
   void check_groups(const KeyPath& path, GroupsSpec& groups) const;
   void check_rotation(const KeyPath& path, RotationSpec& rotation) const;
   void check_end(const KeyPath& path, const std::optional<double>& end_s, const char* begin_key,
@@ -66,6 +66,12 @@ class LinkChecker {
 
 // A key that belongs to another topology would be without effect.
 void LinkChecker::check_keys() const {
+  const bool ranged = radio_.topology == "disk" || radio_.topology == "random-geometric";
+  // (check_propagation() says where "by-position" has its range.)
+  if (radio_.range_m > 0.0 && !ranged && radio_.topology != "by-position") {
+    file_.fail(path_["range_m"], "only for topology = \"disk\" or \"random-geometric\"; found \"" +
+                                     radio_.topology + "\"");
+  }
   struct Key {
     const char* key;
     const char* topology;
@@ -162,20 +168,32 @@ void LinkChecker::check_outage(const KeyPath& path, OutageSpec& outage) const {
   check_end(path["up_s"], outage.up_s, "down_s", outage.down_s);
 }
 
-// Whether a graph that is drawn at random has a link depends on the seed.
-void LinkChecker::check_outages_have_links() const {
-  const bool all = radio_.topology == "full";
-  if (radio_.outages.empty() || all || is_drawn(radio_)) return;
+// An outage or a loss of a link that is not in the graph would be without effect. (Whether a graph
+// that is drawn at random has a link depends on the seed; and who moves may meet anybody.)
+void LinkChecker::check_that_links_exist() const {
+  const std::vector<LinkLossSpec>& losses = radio_.loss.links;
+  if (radio_.outages.empty() && losses.empty()) return;
+  const bool by_place = radio_.topology == "disk" || radio_.topology == "by-position";
+  if (radio_.topology == "full" || is_drawn(radio_)) return;
+  if (by_place && has_motion(file_.scenario)) return;
   const Topology graph = topology_of(file_.scenario, agent_positions(file_.scenario));
+  const auto require_link = [&](const KeyPath& path, int a, int b) {
+    if (graph.link(a, b) >= 0) return;
+    refuse(path, "there is no such link in the topology \"" + radio_.topology + "\"");
+  };
   const KeyPath outages = path_["outages"];
   for (std::size_t i = 0; i < radio_.outages.size(); ++i) {
     const KeyPath outage = outages[i];
     const KeyPath links = outage["links"];
     for (std::size_t k = 0; k < radio_.outages[i].links.size(); ++k) {
       const auto [a, b] = radio_.outages[i].links[k];
-      if (graph.link(a, b) >= 0) continue;
-      refuse(links[k], "there is no such link in the topology \"" + radio_.topology + "\"");
+      require_link(links[k], a, b);
     }
+  }
+  const KeyPath loss = path_["loss"];
+  const KeyPath links = loss["links"];
+  for (std::size_t i = 0; i < losses.size(); ++i) {
+    require_link(links[i], losses[i].from->number, losses[i].to->number);
   }
 }
 

@@ -1,9 +1,12 @@
 // What must fit together in the transmitter, and in how the channel is shared.
 #include <algorithm>
+#include <optional>
 #include <string>
 
 #include "filters/gaussian/codec.hpp"
+#include "net/link_draw.hpp"
 #include "scenarios/scenario_under_check.hpp"
+#include "sim/kernel/time.hpp"
 
 namespace hearsay {
 namespace {
@@ -24,6 +27,11 @@ std::size_t carried_bytes_max(const Scenario& scenario, std::size_t message) {
   return std::max(summary, message + gossip_header_bytes);
 }
 
+[[noreturn]] void refuse(const ScenarioUnderCheck& file, const KeyPath& path,
+                         const std::string& why) {
+  reject(file.locate(path), path, why);
+}
+
 void check_queue(const ScenarioUnderCheck& file, const KeyPath& path) {
   const RadioSpec& radio = file.scenario.radio;
   if (!radio.queue_bytes_max) return;
@@ -32,9 +40,50 @@ void check_queue(const ScenarioUnderCheck& file, const KeyPath& path) {
   const std::size_t frames = message == 0 ? 1 : (message - 1) / mtu + 1;
   const std::size_t packet = message + frames * static_cast<std::size_t>(radio.header_bytes);
   if (static_cast<std::size_t>(*radio.queue_bytes_max) >= packet) return;
-  file.fail(path["queue_bytes_max"],
-            "smaller than one packet: a message of all beliefs, or a summary, takes " +
-                std::to_string(packet) + " bytes with headers");
+  refuse(file, path["queue_bytes_max"],
+         "smaller than one packet: a message of all beliefs, or a summary, takes " +
+             std::to_string(packet) + " bytes with headers");
+}
+
+// A packet has at most frames_max frames.
+void check_frames(const ScenarioUnderCheck& file, const KeyPath& path) {
+  const std::size_t message = carried_bytes_max(file.scenario, message_bytes_max(file.scenario));
+  const std::size_t least = (message + frames_max - 1) / frames_max;
+  const std::optional<int>& mtu_bytes = file.scenario.radio.mtu_bytes;
+  if (!mtu_bytes || static_cast<std::size_t>(*mtu_bytes) >= least) return;
+  refuse(file, path["mtu_bytes"],
+         "must be at least " + std::to_string(least) + ": a message of all beliefs takes " +
+             std::to_string(message) + " bytes, and a packet has at most " +
+             std::to_string(frames_max) + " frames");
+}
+
+// Keys of other models would be without effect.
+void check_sharing_keys(const ScenarioUnderCheck& file, const KeyPath& path) {
+  const SharingSpec& sharing = file.scenario.radio.sharing;
+  const SharingSpec plain;
+  struct Key {
+    const char* key;
+    bool given;
+    const char* model;
+  };
+  const Key keys[] = {
+      {"send_probability", sharing.send_probability != plain.send_probability, "slotted-aloha"},
+      {"slots", sharing.slots != plain.slots, "tdma"},
+      {"interframe_s", sharing.interframe_s != plain.interframe_s, "carrier-sense"},
+      {"window_min", sharing.window_min != plain.window_min, "carrier-sense"},
+      {"window_max", sharing.window_max != plain.window_max, "carrier-sense"}};
+  for (const Key& key : keys) {
+    if (!key.given || sharing.model == key.model) continue;
+    file.fail(path[key.key], std::string("only for model = \"") + key.model + "\"; found \"" +
+                                 sharing.model + "\"");
+  }
+}
+
+// How long an answered frame takes until the last bit of its answer has left, without the way.
+double answer_s(const RadioSpec& radio) {
+  const double jitter_s = radio.jitter.law == "uniform" ? radio.jitter.spread_s : 0.0;
+  return radio.latency_s + jitter_s + radio.acknowledgement.interframe_s +
+         8.0 * radio.acknowledgement.bytes / radio.rate_bps;
 }
 
 void check_slots(const ScenarioUnderCheck& file, const KeyPath& path) {
@@ -52,13 +101,11 @@ void check_slots(const ScenarioUnderCheck& file, const KeyPath& path) {
   const bool acknowledged =
       std::any_of(file.scenario.agents.begin(), file.scenario.agents.end(),
                   [](const AgentSpec& agent) { return agent.talk.service == "acknowledged"; });
-  if (acknowledged) {
-    frame_s +=
-        radio.acknowledgement.interframe_s + 8.0 * radio.acknowledgement.bytes / radio.rate_bps;
-  }
-  if (sharing.slot_s >= frame_s - 1e-9) return;
-  file.fail(path["slot_s"], "shorter than a frame, which takes " + to_toml(frame_s) + " s" +
-                                (acknowledged ? " with its acknowledgement" : ""));
+  if (acknowledged) frame_s += answer_s(radio);
+  if (Duration::seconds(sharing.slot_s) >= Duration::seconds(std::min(frame_s, 9e9))) return;
+  refuse(file, path["slot_s"],
+         "shorter than a frame, which takes " + to_toml(frame_s) + " s" +
+             (acknowledged ? " with latency and acknowledgement" : ""));
 }
 
 }  // namespace
@@ -68,8 +115,10 @@ void check_transmitter(ScenarioUnderCheck& file) {
   const KeyPath path = top["radio"];
   const RadioSpec& radio = file.scenario.radio;
   check_queue(file, path);
+  check_frames(file, path);
   const KeyPath sharing_path = path["sharing"];
   const SharingSpec& sharing = radio.sharing;
+  check_sharing_keys(file, sharing_path);
   if (sharing.model == "none") {
     if (sharing.slot_s > 0.0) {
       file.fail(sharing_path["slot_s"], "without effect; set radio.sharing.model, too");
@@ -80,6 +129,14 @@ void check_transmitter(ScenarioUnderCheck& file) {
     }
   } else {
     check_slots(file, sharing_path);
+  }
+  const bool lengths = radio.topology == "disk" || radio.topology == "by-position" ||
+                       radio.topology == "random-geometric";
+  if (sharing.capture_db && !lengths) {
+    file.fail(sharing_path["capture_db"],
+              "only for topology = \"disk\", \"by-position\" or \"random-geometric\", which know "
+              "how strong a frame is; found \"" +
+                  radio.topology + "\"");
   }
   if (sharing.window_max < sharing.window_min) {
     file.fail(sharing_path["window_max"],

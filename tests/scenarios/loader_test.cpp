@@ -38,7 +38,6 @@ targets = [{ name = "a", position_m = [1, 2.5] }, { position_m = [-3.0, 4.0] }]
 [radio]
 topology = "edges"
 edges = [[0, 1], ["base", "estimator2"]]
-range_m = 30
 rate_bps = 9600
 header_bytes = 12
 queue_packets_max = 3
@@ -80,7 +79,6 @@ ledger = "off"
   EXPECT_FALSE(s.world.log);
   EXPECT_EQ(s.radio.topology, "edges");
   EXPECT_EQ(s.radio.edges, (std::vector<std::array<int, 2>>{{0, 1}, {0, 2}}));
-  EXPECT_EQ(s.radio.range_m, 30.0);
   EXPECT_EQ(s.radio.rate_bps, 9600.0);
   EXPECT_EQ(s.radio.header_bytes, 12);
   EXPECT_EQ(s.radio.queue_packets_max, 3);

@@ -41,9 +41,9 @@ class Storm {
         talks_[at].push_back({from, bytes, to < agents ? to : no_agent});
       }
     }
-    for (const auto& [at, talks] : talks_) {
-      simulation_.schedule(at, Phase::act, [this, &talks] {
-        for (const Talk& talk : talks) {
+    for (const auto& talks : talks_) {
+      simulation_.schedule(talks.first, Phase::act, [this, &talks] {
+        for (const Talk& talk : talks.second) {
           const std::string text(static_cast<std::size_t>(talk.bytes), 'x');
           radio_.send(talk.from, {.bytes = bytes_of(text), .receiver = talk.to});
         }

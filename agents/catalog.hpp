@@ -1,5 +1,5 @@
-// The kinds of agent that scenario files may name, besides the built-in "estimator": what a user's
-// own program adds.
+// The kinds of agent that scenario files may name, besides the built-in "estimator" and
+// "source": what a user's own program adds.
 #pragma once
 
 #include <functional>
@@ -31,7 +31,7 @@ class Catalog {
   template <class T>
   Catalog& add_agent(const std::string& name, const std::string& meaning) {
     AgentKind kind{meaning, [](Context& context) { return std::make_unique<T>(context); }};
-    if (name == "estimator" || !agents_.emplace(name, std::move(kind)).second) {
+    if (name == "estimator" || name == "source" || !agents_.emplace(name, std::move(kind)).second) {
       throw std::invalid_argument("agent kind '" + name + "' exists already");
     }
     return *this;

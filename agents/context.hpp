@@ -66,6 +66,10 @@ class Context {
   std::span<const AgentId> neighbours() { return radio_.neighbours(id()); }
   /// True if neighbours() may change over time.
   bool neighbours_change() const { return radio_.neighbours_change(); }
+  /// Packets that wait in the queue of its radio, without the one that is being sent.
+  std::size_t waiting() const { return radio_.waiting(id()); }
+  /// From now on the agent's on_queue_empty() is called when the last of them has left the queue.
+  void tell_of_empty_queue() { radio_.tell_of_empty_queue(id()); }
   /// True if packets may come from others than neighbours() at the start of the run.
   bool hears_strangers() const { return service_.gossip || radio_.neighbours_change(); }
   /// Says something by the agent's service (agents.talk.service). Store-and-forward: a bundle; a

@@ -50,6 +50,9 @@ class Receiver {
     static_cast<void>(packet);
     static_cast<void>(acknowledged);
   }
+  /// The last packet that waited in its transmitter's queue has left it: is being sent, or has
+  /// expired. Called for who asked, Radio::tell_of_empty_queue(). It may send.
+  virtual void on_queue_empty() {}
 };
 
 class Radio final : private AccessUser {
@@ -78,6 +81,13 @@ class Radio final : private AccessUser {
   /// @throws InputError for a packet that an empty queue has no room for, or of which a frame takes
   /// longer than the slot that it must fit into (slotted ALOHA, TDMA).
   bool send(AgentId sender, const Outgoing& packet);
+
+  /// From now on the agent's receiver is told when its queue is empty, Receiver::on_queue_empty().
+  void tell_of_empty_queue(AgentId agent) { stations_[index(agent, "agent")].tells = true; }
+  /// Packets in the agent's queue, without the one that is being sent.
+  std::size_t waiting(AgentId agent) const {
+    return stations_[index(agent, "agent")].waiting.size();
+  }
 
   /// The agent fails, or is back. While it is down it hears nothing; its packets that wait or are
   /// on the air are lost (sender_down), and so is what was on its way to it (receiver_down).
@@ -121,6 +131,7 @@ class Radio final : private AccessUser {
     bool held = false;         // by on_air: more frames of it, or an acknowledgement, are to come
     bool asked = false;        // for the air
     bool up = true;
+    bool tells = false;  // its receiver wants to know when nothing waits any more
     bool sends(Time now) const { return held || free_at > now; }
   };
   // True if the transmitter is busy, be it with somebody else's acknowledgement.
@@ -156,6 +167,7 @@ class Radio final : private AccessUser {
   void granted(AgentId sender) override;
   void take_next(AgentId sender);
   void drop_expired(AgentId sender);
+  void tell_if_empty(AgentId sender);
   void begin(std::uint32_t slot);
   void begin_frames(std::uint32_t slot);
   void end_frames(std::uint32_t slot);

@@ -25,9 +25,18 @@ void Radio::take_next(AgentId sender) {
   Station& from = station(sender);
   from.next = EventId();
   drop_expired(sender);
-  if (from.waiting.empty()) return;
-  if (!busy(sender, simulation_.now())) begin(from.waiting.pop());
+  if (!from.waiting.empty() && !busy(sender, simulation_.now())) begin(from.waiting.pop());
   if (!from.waiting.empty()) wake(sender);
+  tell_if_empty(sender);
+}
+
+void Radio::tell_if_empty(AgentId sender) {
+  const Station& from = station(sender);
+  if (!from.tells || !from.waiting.empty()) return;
+  Receiver* const receiver = receivers_[static_cast<std::size_t>(sender)];
+  if (!receiver) return;
+  simulation_.acting_for(sender);
+  receiver->on_queue_empty();
 }
 
 void Radio::ask(AgentId sender, int repetition) {
@@ -44,6 +53,7 @@ void Radio::granted(AgentId sender) {
   if (from.held) return begin_frames(from.on_air);
   drop_expired(sender);
   if (!from.waiting.empty()) begin(from.waiting.pop());
+  tell_if_empty(sender);
 }
 
 void Radio::drop_expired(AgentId sender) {

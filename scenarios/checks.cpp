@@ -24,6 +24,7 @@ class Checker {
     }
     check_services(file_);
     check_motion(file_);
+    check_traffic(file_);
     check_radio(file_);
     check_agreement();
   }

@@ -95,6 +95,25 @@ void describe(V& v, TalkSpec& s) {
 }
 
 template <class V>
+void describe(V& v, TrafficSpec& s) {
+  v.field("arrivals", s.arrivals, one_of({"periodic", "poisson", "saturated"}),
+          "when there is a packet; \"saturated\": always, the next waits while one is sent");
+  v.field("period_s", s.period_s, time_span(false),
+          "\"periodic\", \"poisson\": mean time between packets");
+  v.field("phase_s", s.phase_s, time_span(true),
+          "\"periodic\": the first packet, below the period; default: at random");
+  v.field("packets_max", s.packets_max, between(1, 1e9),
+          "then it is silent; default: no limit but the end of the run");
+  v.field("bytes", s.bytes, between(1, 1e6), "of a packet without headers, or their mean");
+  v.field("sizes", s.sizes, one_of({"fixed", "exponential"}),
+          "whether all packets have one size, or how sizes differ");
+  v.field("service", s.service, one_of({"broadcast", "unicast", "acknowledged"}),
+          "to all who hear, to one receiver, or to it until it acknowledges");
+  v.field("receiver", s.receiver, anything(),
+          "\"unicast\", \"acknowledged\": to whom, by number or name");
+}
+
+template <class V>
 void describe(V& v, AgentSpec& s) {
   v.field("name", s.name, anything(), "default <kind><i>; with count > 1 a number is appended");
   v.field("kind", s.kind, one_of(v.names().agent_kinds), "class of the agent");
@@ -107,6 +126,7 @@ void describe(V& v, AgentSpec& s) {
   v.table("sensor", s.sensor, "what it measures");
   v.table("estimator", s.estimator, "what it believes");
   v.table("talk", s.talk, "what it says when");
+  v.table("traffic", s.traffic, "what a source sends; default: nothing, it listens");
   v.field("parameters", s.parameters, anything(), "numbers for agents of a user's program");
 }
 

@@ -5,6 +5,7 @@
 
 #include "scenarios/channel.hpp"
 #include "scenarios/network.hpp"
+#include "scenarios/traffic.hpp"
 #include "sim/kernel/error.hpp"
 
 namespace hearsay {
@@ -220,9 +221,7 @@ void Run::build_agents(const Catalog& catalog) {
                           .parameters = spec.parameters},
         Context::Service{.acknowledged = spec.talk.service == "acknowledged",
                          .gossip = gossips_.back().get()}));
-    const auto own = catalog.agents().find(spec.kind);
-    agents_.push_back(own == catalog.agents().end() ? make_estimator(id)
-                                                    : own->second.make(*contexts_.back()));
+    agents_.push_back(make_agent(id, catalog));
     if (gossips_.back()) {
       gossips_.back()->attach(*agents_.back());
     } else {
@@ -233,6 +232,17 @@ void Run::build_agents(const Catalog& catalog) {
   if (!dropouts.agents().empty()) {
     life_ = std::make_unique<Life>(simulation_, *radio_, agents_, gossips_, std::move(dropouts));
   }
+}
+
+std::unique_ptr<Agent> Run::make_agent(AgentId id, const Catalog& catalog) {
+  const auto i = static_cast<std::size_t>(id);
+  const AgentSpec& spec = *prepared_->specs[i];
+  const auto own = catalog.agents().find(spec.kind);
+  if (own != catalog.agents().end()) return own->second.make(*contexts_[i]);
+  if (spec.kind == "estimator") return make_estimator(id);
+  std::optional<SourceTraffic> traffic;
+  if (spec.traffic) traffic = traffic_of(*spec.traffic, id, simulation_.seed());
+  return std::make_unique<SourceAgent>(*contexts_[i], traffic);
 }
 
 std::unique_ptr<Agent> Run::make_estimator(AgentId id) {

@@ -14,6 +14,7 @@
 
 #include "agents/catalog.hpp"
 #include "agents/estimator_agent.hpp"
+#include "agents/source_agent.hpp"
 #include "agents/witness.hpp"
 #include "net/movement.hpp"
 #include "scenarios/life.hpp"
@@ -82,6 +83,7 @@ class Run {
  private:
   void build_radio(std::uint64_t seed);
   void build_agents(const Catalog& catalog);
+  std::unique_ptr<Agent> make_agent(AgentId id, const Catalog& catalog);
   std::unique_ptr<Agent> make_estimator(AgentId id);
   void leave_final_values();
   void record_radio();

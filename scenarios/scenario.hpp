@@ -53,6 +53,7 @@ struct SensorSpec {
 struct EstimatorSpec {
   std::string kind = "static-gaussian";
   std::string fusion = "none";  ///< a name of gaussian::rules()
+  bool operator==(const EstimatorSpec&) const = default;
 };
 
 struct TalkSpec {
@@ -62,11 +63,24 @@ struct TalkSpec {
   std::optional<double> phase_s;    ///< this agent's own phase instead, in [0, period)
   /// "broadcast" | "acknowledged" | "store-and-forward" | "blackboard"
   std::string service = "broadcast";
+  bool operator==(const TalkSpec&) const = default;
+};
+
+/// What a source sends.
+struct TrafficSpec {
+  std::string arrivals = "poisson";   ///< "periodic" | "poisson" | "saturated"
+  std::optional<double> period_s;     ///< > 0, mean time between packets; not for "saturated"
+  std::optional<double> phase_s;      ///< "periodic": the first, in [0, period); none: at random
+  std::optional<int> packets_max;     ///< 1 … 1e9; none: no limit but the end of the run
+  int bytes = 100;                    ///< of a packet, or their mean; 1 … 1e6
+  std::string sizes = "fixed";        ///< "fixed" | "exponential"
+  std::string service = "broadcast";  ///< "broadcast" | "unicast" | "acknowledged"
+  std::optional<AgentRef> receiver;   ///< of the latter two, which need it
 };
 
 struct AgentSpec {
   std::string name;                ///< default "<kind><i>"; with count > 1 a number is appended
-  std::string kind = "estimator";  ///< or one that a user's program adds
+  std::string kind = "estimator";  ///< or "source", or one that a user's program adds
   int count = 1;                   ///< 1 … 1e6
   std::optional<std::vector<double>> position_m;  ///< 2 coordinates
   std::optional<CircleSpec> circle;               ///< instead of position_m
@@ -74,6 +88,7 @@ struct AgentSpec {
   SensorSpec sensor;
   EstimatorSpec estimator;
   TalkSpec talk;
+  std::optional<TrafficSpec> traffic;        ///< of a source; none: it listens
   std::map<std::string, double> parameters;  ///< free, for agents of a user's program
 };
 

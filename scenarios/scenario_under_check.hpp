@@ -56,6 +56,9 @@ inline bool has_place(const AgentSpec& agent) { return placed(agent) || agent.mo
 /// The first one whose name an earlier one has, too.
 std::optional<std::size_t> first_duplicate(const std::vector<std::string>& names);
 
+/// Checks what sources send, and finds the numbers of its receivers.
+/// @throws InputError.
+void check_traffic(ScenarioUnderCheck& file);
 /// Checks queue, frames and how the channel is shared.
 /// @throws InputError.
 void check_transmitter(ScenarioUnderCheck& file);

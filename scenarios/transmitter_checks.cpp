@@ -98,9 +98,11 @@ void check_slots(const ScenarioUnderCheck& file, const KeyPath& path) {
                                  "\" needs radio.mtu_bytes, which says how long a frame can be");
   }
   double frame_s = 8.0 * (*radio.mtu_bytes + radio.header_bytes) / radio.rate_bps;
-  const bool acknowledged =
-      std::any_of(file.scenario.agents.begin(), file.scenario.agents.end(),
-                  [](const AgentSpec& agent) { return agent.talk.service == "acknowledged"; });
+  const bool acknowledged = std::any_of(
+      file.scenario.agents.begin(), file.scenario.agents.end(), [](const AgentSpec& agent) {
+        return agent.talk.service == "acknowledged" ||
+               (agent.traffic && agent.traffic->service == "acknowledged");
+      });
   if (acknowledged) frame_s += answer_s(radio);
   if (Duration::seconds(sharing.slot_s) >= Duration::seconds(std::min(frame_s, 9e9))) return;
   refuse(file, path["slot_s"],

@@ -331,6 +331,34 @@ class Selection:
             array[cell, repetition] = np.nan if value is None else value
         return found
 
+    def agent(self, name):
+        """Number of the agent of that name. @raises UserError if there is none."""
+        found = self._database.rows(
+            "SELECT id FROM agent WHERE run = (SELECT MIN(run) FROM temp.chosen) AND name = ?",
+            (name,),
+        )
+        if not found:
+            raise UserError(f"{self._database.file}: no agent {name!r} in these runs")
+        return found[0][0]
+
+    def scalar_of(self, name, agent):
+        """array[cell, repetition] of a scalar of one agent, NaN where it is undefined.
+        @raises UserError if it was not recorded."""
+        values = self.scalar(name).get(agent)
+        if values is None:
+            raise UserError(f"{self._database.file}: no scalar {name!r} of agent {agent}")
+        return values
+
+    def link_shares(self, cell, repetition=0):
+        """Which share of its packets each link delivered, one number a link, in one run."""
+        rows = self._database.rows(
+            "SELECT SUM(l.packets * (l.fate = 'delivered')), SUM(l.packets)"
+            " FROM temp.chosen c JOIN link l ON l.run = c.run"
+            " WHERE c.cell = ? AND c.repetition = ? GROUP BY l.sender, l.receiver",
+            (cell, repetition),
+        )
+        return np.array([delivered / packets for delivered, packets in rows])
+
     def state_dimension(self):
         """n of the χ² that NEES follows."""
         values = self.scalar("state_dimension").get(CENTRAL)

@@ -61,6 +61,41 @@ def anees_band(dimension, runs, comparisons=1, alpha=0.05):
     return chi2_quantile(tail, degrees) / degrees, chi2_quantile(1.0 - tail, degrees) / degrees
 
 
+@functools.lru_cache(maxsize=64)
+def t_quantile(p, degrees):
+    """x with P(t_degrees ≤ x) = p, ½ ≤ p < 1: bisection on Simpson's rule."""
+    log_scale = math.lgamma((degrees + 1) / 2) - math.lgamma(degrees / 2)
+    scale = math.exp(log_scale) / math.sqrt(degrees * math.pi)
+
+    def above_half(x):
+        y = np.linspace(0.0, x, 2001)
+        density = scale * (1.0 + y * y / degrees) ** (-(degrees + 1) / 2)
+        weights = np.full(len(y), 2.0)
+        weights[1::2], weights[0], weights[-1] = 4.0, 1.0, 1.0
+        return float(weights @ density) * (y[1] - y[0]) / 3.0
+
+    low, high = 0.0, 1000.0
+    for _ in range(100):
+        middle = 0.5 * (low + high)
+        if above_half(middle) < p - 0.5:
+            low = middle
+        else:
+            high = middle
+    return 0.5 * (low + high)
+
+
+def mean_interval(values, alpha=0.05):
+    """(mean, half width of its t interval) of the finite values. Without two of them no width is
+    known: NaN; without any neither."""
+    values = np.asarray(values)[np.isfinite(values)]
+    if len(values) == 0:
+        return math.nan, math.nan
+    if len(values) == 1:
+        return float(values[0]), math.nan
+    error = values.std(ddof=1) / math.sqrt(len(values))
+    return float(values.mean()), t_quantile(1.0 - alpha / 2.0, len(values) - 1) * float(error)
+
+
 @functools.lru_cache(maxsize=8)
 def _resamples(n, resamples, seed):
     """How often each of n repetitions is drawn in each resample."""

@@ -64,7 +64,7 @@ def links_panel(axes, chosen, distances, x):
     mean = [MODELS["shadowed"][1](d) for d in fine]
     radio_panels.theory(axes, fine, mean, color, width=1.4)
     axes.set_title("Shadowing, link by link", loc="left", fontweight="bold")
-    at = x.max() * 0.78
+    at = x.max() * 0.75
     axes.annotate(
         "mean over links,\nclosed form", (at, MODELS["shadowed"][1](at)), (at, 0.2), fontsize=8,
         color=color, arrowprops=dict(arrowstyle="-", color=color, lw=0.6), zorder=5,

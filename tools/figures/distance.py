@@ -90,8 +90,8 @@ def main():
     radio_panels.caption(
         figure, chosen,
         f"Frames of {FRAME_BYTES} bytes; log-distance: exponent 3, 46.7 dB at 1 m, 0 dBm over a"
-        " noise of −105 dBm, BER = ½ exp(−SNR/1.28). Shadowing is drawn once a link: most links are good"
-        " or bad, few in between. Right: a dot is a link of the first repetition.",
+        " noise of −105 dBm, BER = ½ exp(−SNR/1.28). Shadowing is drawn once a link: most links are"
+        " good or bad, few in between. Right: a dot is a link of the first repetition.",
     )
     style.write(figure, arguments.output)
 

@@ -24,9 +24,12 @@ class BrokenInvariant : public std::logic_error {
   explicit BrokenInvariant(const std::string& what) : std::logic_error(what) {}
 };
 
+/// @throws BrokenInvariant with `what`. Out of line, so that who requires much stays small.
+[[noreturn]] void broken(const char* what);
+
 /// @throws BrokenInvariant with `what` unless `holds`. Checked in every build.
 inline void require(bool holds, const char* what) {
-  if (!holds) throw BrokenInvariant(what);
+  if (!holds) broken(what);
 }
 
 }  // namespace hearsay

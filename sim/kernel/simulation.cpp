@@ -52,26 +52,12 @@ Time Simulation::after(Duration span) const {
   return span >= Time::never() - now_ ? Time::never() : now_ + span;
 }
 
-bool Simulation::go_on(Time time, Phase phase) {
-  require(happening_, "what is not happening cannot go on");
-  require(time >= now_, "an event was to go on in the past");
+// Whether nothing is due up to that instant, and there will be one.
+bool Simulation::quiet_at(Time time) {
   if (failed_ || time > options_.end || time == Time::never()) return false;
-  if (end_.events == options_.events_max) return false;
-  if (time >= quiet_until_) {
-    quiet_until_ = queue_.empty() ? Time::never() : queue_.next_time();
-    if (time >= quiet_until_) return false;
-  }
-  // Behind samples no more may happen at their instant: schedule() will say so.
-  if (observing_ && time == now_) return false;
-  begin_event(time, phase);
-  return true;
-}
-
-void Simulation::begin_event(Time time, Phase phase) {
-  now_ = time;
-  observing_ = phase == Phase::observe;
-  acting_ = no_agent;
-  ++end_.events;
+  quiet_until_ = queue_.empty() ? Time::never() : queue_.next_time();
+  if (options_.end < quiet_until_) quiet_until_ = options_.end + 1_ns;
+  return time < quiet_until_;
 }
 
 std::string Simulation::who(AgentId agent) const {
@@ -84,6 +70,7 @@ std::string Simulation::who(AgentId agent) const {
 void Simulation::fail(AgentId agent, std::exception_ptr error) {
   if (failed_) return;
   failed_ = true;
+  quiet_until_ = Time();
   end_.reason = EndReason::agent_failed;
   end_.agent = agent;
   end_.message = who(agent) + " failed at " + to_seconds(now_) + " s: " + what_of(error);

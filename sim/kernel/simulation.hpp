@@ -85,7 +85,16 @@ class Simulation {
   /// the event is to be scheduled. Both ways give the same run.
   /// @return whether the clock stands at `time`.
   /// @throws BrokenInvariant if no event is happening, or `time` is before now().
-  bool go_on(Time time, Phase phase);
+  bool go_on(Time time, Phase phase) {
+    require(happening_, "what is not happening cannot go on");
+    require(time >= now_, "an event was to go on in the past");
+    if (time >= quiet_until_ && !quiet_at(time)) return false;
+    if (end_.events == options_.events_max) return false;
+    // Behind samples no more may happen at their instant: schedule() will say so.
+    if (observing_ && time == now_) return false;
+    begin_event(time, phase);
+    return true;
+  }
 
   /// From now on failures are charged to `agent`. Callbacks that act for an agent set it first;
   /// it is reset to no_agent before each event.
@@ -114,7 +123,13 @@ class Simulation {
 
  private:
   std::string who(AgentId agent) const;
-  void begin_event(Time time, Phase phase);
+  void begin_event(Time time, Phase phase) {
+    now_ = time;
+    observing_ = phase == Phase::observe;
+    acting_ = no_agent;
+    ++end_.events;
+  }
+  bool quiet_at(Time time);
 
   Options options_;
   Time now_;
@@ -123,7 +138,8 @@ class Simulation {
   AgentId acting_ = no_agent;
   bool started_ = false;
   bool happening_ = false;  // an event is
-  Time quiet_until_;        // nothing is due before, as far as go_on() has looked
+  // Nothing is due before, and the run has not ended, as far as go_on() has looked.
+  Time quiet_until_;
   bool observing_ = false;
   bool failed_ = false;
   RunEnd end_;

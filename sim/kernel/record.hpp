@@ -15,6 +15,8 @@
 #include <string_view>
 #include <vector>
 
+#include "sim/kernel/canon.hpp"
+#include "sim/kernel/error.hpp"
 #include "sim/kernel/ids.hpp"
 #include "sim/kernel/time.hpp"
 
@@ -63,13 +65,6 @@ struct AgentRow {
   std::string kind;
 };
 
-/// Takes canonical bytes. Implemented in sim/record by XXH3; may be absent.
-class DigestSink {
- public:
-  virtual ~DigestSink() = default;
-  virtual void update(std::span<const std::byte> bytes) = 0;
-};
-
 /// Which part of a record a row belongs to.
 enum class Origin : std::uint8_t {
   run,     ///< what happened
@@ -95,7 +90,12 @@ class Record {
   void scalar(AgentId agent, NameId name, double value, Origin origin = Origin::run);
   void series(Time time, AgentId agent, NameId subject, NameId name, double value,
               Origin origin = Origin::run);
-  void message(const MessageRow& row);
+  void message(const MessageRow& row) {
+    require_open();
+    run_canon_.row('M', row.sent, row.arrived, row.sender, row.receiver, hash(row.kind),
+                   std::uint64_t{row.bytes}, hash(row.fate));
+    if (options_.keep_messages) keep(row);
+  }
   void link(const LinkRow& row);
   void event(Time time, AgentId agent, std::string_view kind, std::string_view detail);
 
@@ -114,23 +114,12 @@ class Record {
   std::uint64_t events_not_kept() const { return events_not_kept_; }
 
  private:
-  /// Collects the canonical bytes of rows: little-endian, −0 as +0, every NaN as one pattern. A row
-  /// is one byte that says its kind, then its fields: numbers as 64 bits (agents sign-extended),
-  /// text as its length and bytes, names as the hash of their text, so that ids do not matter.
-  struct Canon {
-    DigestSink* sink = nullptr;
-    std::vector<std::byte> buffer;  // empty without a sink
-    std::size_t used = 0;           // less than a piece, between rows
-    /// The beginning of a row; numbers go straight to their place.
-    template <class... Numbers>
-    void row(char kind, Numbers... numbers);
-    void text(std::string_view value);
-    void pass_on();
-    void flush();
-  };
   Canon& canon(Origin origin) { return origin == Origin::run ? run_canon_ : ledger_canon_; }
   std::uint64_t hash(NameId id) const { return hashes_.at(id); }
-  void require_open() const;
+  void require_open() const {
+    require(!finished_, "something was recorded after the record was finished");
+  }
+  void keep(MessageRow row);
 
   Options options_;
   std::vector<std::string> names_;

@@ -78,7 +78,7 @@ void Radio::begin(std::uint32_t slot) {
   if (!t.aimed) aim(t, true);
   SenderCounts& counts = traffic_.sender(t.sender);
   ++counts.begun;
-  counts.queue_delay += simulation_.now() - t.sent;
+  if (simulation_.now() > t.sent) counts.queue_delay += simulation_.now() - t.sent;
   from.on_air = slot;
   from.held = receptions_ || t.acknowledged;
   begin_frames(slot);

@@ -13,17 +13,17 @@ namespace hearsay {
 
 using FateCounts = std::array<std::uint64_t, fate_count>;
 
-/// Sums over a run, for one sender.
+/// Sums over a run, for one sender. What most packets change comes first, in a line of the cache.
 struct alignas(64) SenderCounts {
-  std::uint64_t packets = 0;           ///< handed to the radio
-  std::uint64_t begun = 0;             ///< packets of which sending began
-  std::uint64_t frames = 0;            ///< frames of which sending began, repeated ones too
-  std::uint64_t bytes_sent = 0;        ///< of these frames, with headers, and of acknowledgements
-  std::uint64_t expected = 0;          ///< potential receivers of all packets, summed
-  std::uint64_t acknowledgements = 0;  ///< sent for others
+  std::uint64_t packets = 0;     ///< handed to the radio
+  std::uint64_t begun = 0;       ///< packets of which sending began
+  std::uint64_t frames = 0;      ///< frames of which sending began, repeated ones too
+  std::uint64_t bytes_sent = 0;  ///< of these frames, with headers, and of acknowledgements
+  std::uint64_t expected = 0;    ///< potential receivers of all packets, summed
+  Duration air_time;             ///< time the transmitter was busy
   FateCounts fates{};
-  Duration air_time;     ///< time the transmitter was busy
-  Duration queue_delay;  ///< from hand-over to the first bit, summed over `begun`
+  Duration queue_delay;                ///< from hand-over to the first bit, summed over `begun`
+  std::uint64_t acknowledgements = 0;  ///< sent for others
 };
 
 /// @throws BrokenInvariant, naming agent and numbers, unless the fates add up to what was expected.

@@ -22,6 +22,12 @@ bool arrives_before(const Ear& a, const Ear& b) {
   return a.delay != b.delay ? a.delay < b.delay : a.agent < b.agent;
 }
 
+// Without a branch: none foresees what is drawn.
+Fate fate_if(bool lost) {
+  static_assert(Fate{0} == Fate::delivered && Fate{1} == Fate::lost);
+  return static_cast<Fate>(lost);
+}
+
 template <class T>
 T& at_link(std::vector<T>& values, std::uint32_t link) {
   if (values.size() <= link) values.resize(std::bit_ceil(std::size_t{link} + 1));
@@ -193,10 +199,10 @@ double Channel::distance_m(AgentId from, AgentId to) const {
   return std::sqrt(squared_distance_m2(position(from), position(to)));
 }
 
-PacketOnLink Channel::on_link(const Transmission& t, std::size_t i, std::uint64_t index) const {
+PacketOnLink Channel::on_link(const Transmission& t, AgentId to, std::uint64_t index) const {
   return {.seed = simulation_.seed(),
           .from = t.sender,
-          .to = t.route.hearer(i),
+          .to = to,
           .numbering = t.has_tick ? Numbering::tick : Numbering::packet,
           .index = index};
 }
@@ -214,8 +220,7 @@ double Channel::power_dbm(AgentId from, AgentId to) const {
 }
 
 // Whether the distance lets all frames through.
-bool Channel::heard(const PacketOnLink& packet, const Transmission& t,
-                    double interference_mw) const {
+bool Channel::heard(PacketOnLink packet, const Transmission& t, double interference_mw) const {
   const auto bytes = static_cast<std::uint32_t>(t.bytes.size());
   const std::uint32_t before_last = (t.frames - 1) * mtu_bytes_;
   const FrameSizes sizes{.frames = t.frames,
@@ -242,27 +247,34 @@ void Channel::aim(Transmission& t, bool draws) {
   if (numbered) t.numbers.reserve(t.fates.size());
   const bool lossy = draws && !loss_.never();
   const bool fading = draws && !certain_;
-  for (std::size_t i = 0; i < t.route.size; ++i) {
-    const std::uint64_t index = t.has_tick ? t.index : at_link(link_packets_, t.route.link(i))++;
-    if (t.receiver != no_agent) t.index = index;
-    if (numbered) t.numbers.push_back(index);
-    const PacketOnLink packet = on_link(t, i, index);
-    const bool gone = (lossy && loss_.lost(packet, t.frames)) || (fading && !heard(packet, t, 0.0));
-    t.fates[i] = gone ? Fate::lost : Fate::delivered;
+  const Route route = t.route;  // a copy, and no address of `packet`: they stay in registers
+  const bool has_tick = t.has_tick;
+  const std::uint32_t frames = t.frames;
+  Fate* const fates = t.fates.data();
+  PacketOnLink packet = on_link(t, no_agent, t.index);
+  for (std::size_t i = 0; i < route.size; ++i) {
+    const Ear ear = route.ear(i);
+    packet.to = ear.agent;
+    if (!has_tick) packet.index = at_link(link_packets_, ear.link)++;
+    if (numbered) t.numbers.push_back(packet.index);
+    fates[i] = Fate::delivered;
+    if (lossy) fates[i] = fate_if(loss_.lost(packet, frames));
+    if (fading && fates[i] == Fate::delivered && !heard(packet, t, 0.0)) fates[i] = Fate::lost;
   }
+  if (t.receiver != no_agent) t.index = packet.index;
 }
 
 Fate Channel::repeat(Transmission& t) {
   if (by_place_) route(t);
   if (!t.route.reaches) return Fate::out_of_range;
-  PacketOnLink packet = on_link(t, 0, t.index);
+  PacketOnLink packet = on_link(t, t.receiver, t.index);
   packet.repetition = static_cast<std::uint32_t>(t.repetition);
   const bool gone = loss_.lost(packet, t.frames) || (!certain_ && !heard(packet, t, 0.0));
   return gone ? Fate::lost : Fate::delivered;
 }
 
 bool Channel::acknowledgement_lost(const Transmission& t) const {
-  PacketOnLink answer = on_link(t, 0, t.index);
+  PacketOnLink answer = on_link(t, t.receiver, t.index);
   std::swap(answer.from, answer.to);
   answer.repetition = static_cast<std::uint32_t>(t.repetition);
   answer.answer = true;
@@ -274,7 +286,9 @@ bool Channel::acknowledgement_lost(const Transmission& t) const {
 
 Fate Channel::fate_on_arrival(const Transmission& t, std::size_t i) const {
   if (!t.route.reaches) return Fate::delivered;
-  if (!changes_.empty() && !states_.up_since(t.route.link(i), t.start)) return Fate::out_of_range;
+  if (!changes_.empty() && !states_.up_since(t.route.ear(i).link, t.start)) {
+    return Fate::out_of_range;
+  }
   if (jammers_.none()) return Fate::delivered;
   const AgentId hearer = t.route.hearer(i);
   const Point place_m = position(hearer);
@@ -282,7 +296,7 @@ Fate Channel::fate_on_arrival(const Transmission& t, std::size_t i) const {
   if (!propagation_.has_powers()) return Fate::delivered;
   const double noise_mw = jammers_.interference_mw(place_m, t.start, t.end, propagation_);
   if (noise_mw <= 0.0) return Fate::delivered;
-  PacketOnLink packet = on_link(t, i, t.numbers[i]);
+  PacketOnLink packet = on_link(t, hearer, t.numbers[i]);
   packet.repetition = static_cast<std::uint32_t>(t.repetition);
   return heard(packet, t, noise_mw) ? Fate::delivered : Fate::jammed;
 }
@@ -296,25 +310,25 @@ void Channel::launch(Transmission& t) {
 void Channel::draw_jitter(Transmission& t) {
   sorting_.clear();
   for (std::size_t i = 0; i < t.route.size; ++i) {
-    const std::uint32_t link = t.route.link(i);
-    PacketOnLink packet = on_link(t, i, t.has_tick ? t.index : t.numbers[i]);
+    const Ear ear = t.route.ear(i);
+    PacketOnLink packet = on_link(t, ear.agent, t.has_tick ? t.index : t.numbers[i]);
     packet.repetition = static_cast<std::uint32_t>(t.repetition);
     FrameDraws draws(packet, jitter_draws);
     const double spread_s = jitter_.spread.seconds();
     const double jitter_s = jitter_.law == JitterOptions::Law::uniform
                                 ? spread_s * draws.next()
                                 : -spread_s * math::log(1.0 - draws.next());
-    const Duration pure = t.receiver == no_agent ? t.route.delay(i) : t.way;
+    const Duration pure = t.receiver == no_agent ? ear.delay : t.way;
     Duration delay = later(Time::at(pure), at_most_9e9(jitter_s)).since_start();
     if (!jitter_.reordering) {
       // Not at the same instant: there, who is first depends on what else the packets have to do.
-      Time& earliest = at_link(link_arrival_, link);
+      Time& earliest = at_link(link_arrival_, ear.link);
       const Time arrival = std::max(earliest, later(t.arrives, delay));
       delay = arrival - t.arrives;
       earliest = later(arrival, 1_ns);
     }
     sorting_.push_back(
-        {{delay, t.route.hearer(i), link}, t.fates[i], t.numbers.empty() ? 0 : t.numbers[i]});
+        {{delay, ear.agent, ear.link}, t.fates[i], t.numbers.empty() ? 0 : t.numbers[i]});
   }
   std::sort(sorting_.begin(), sorting_.end(),
             [](const Sorted& a, const Sorted& b) { return arrives_before(a.ear, b.ear); });

@@ -52,7 +52,9 @@ class Channel {
   /// True if links of the graph come and go.
   bool links_change() const { return !changes_.empty(); }
   /// Whether the link to the packet's i-th hearer is up now.
-  bool link_up(const Transmission& t, std::size_t i) const { return states_.up(t.route.link(i)); }
+  bool link_up(const Transmission& t, std::size_t i) const {
+    return states_.up(t.route.ear(i).link);
+  }
   /// True if who may hear a packet is known when it is handed over.
   bool foreseen() const { return !by_place_; }
   /// Where `agent` is now. @throws BrokenInvariant if nobody knows.
@@ -79,10 +81,10 @@ class Channel {
   bool acknowledgement_lost(const Transmission& t) const;
   /// When the last bit has left: from now on its hearers are in order of arrival.
   void launch(Transmission& t);
-  /// What else the channel makes of a packet that arrives at its i-th hearer now.
-  Fate on_arrival(const Transmission& t, std::size_t i) const {
-    return quiet_ ? Fate::delivered : fate_on_arrival(t, i);
-  }
+  /// True if nothing happens to a packet on its way that aim() does not know.
+  bool quiet() const { return quiet_; }
+  /// What the channel makes of a packet that arrives at its i-th hearer now, beside that.
+  Fate fate_on_arrival(const Transmission& t, std::size_t i) const;
   /// How strong the i-th hearer hears a packet, and `to` a frame of `from`, now.
   double power_dbm(const Transmission& t, std::size_t i) const {
     return powers_ ? power_dbm(t.sender, t.route.hearer(i)) : 0.0;
@@ -97,10 +99,9 @@ class Channel {
   Duration way(double distance_m) const;
   double distance_m(AgentId from, AgentId to) const;
   std::uint32_t number(AgentId from, AgentId to);
-  PacketOnLink on_link(const Transmission& t, std::size_t i, std::uint64_t index) const;
+  PacketOnLink on_link(const Transmission& t, AgentId to, std::uint64_t index) const;
   LinkQuality quality(AgentId from, AgentId to, double interference_mw) const;
-  bool heard(const PacketOnLink& packet, const Transmission& t, double interference_mw) const;
-  Fate fate_on_arrival(const Transmission& t, std::size_t i) const;
+  bool heard(PacketOnLink packet, const Transmission& t, double interference_mw) const;
   void schedule_change();
 
   Simulation& simulation_;
@@ -120,7 +121,7 @@ class Channel {
   std::uint32_t mtu_bytes_;
   std::uint32_t header_bytes_;
   std::uint32_t answer_bytes_;
-  bool quiet_;                   // nothing happens to a packet on its way that is not drawn before
+  bool quiet_;
   bool powers_;                  // are of interest
   bool numbers_links_;           // although radios move
   bool certain_;                 // who is in reach hears

@@ -112,6 +112,7 @@ Loss Loss::bernoulli(double probability, std::vector<LinkLoss> links) {
   }
   Loss made;
   made.model_ = probability > 0.0 || !links.empty() ? Model::bernoulli : Model::none;
+  made.plain_ = made.model_ == Model::bernoulli && links.empty();
   made.probability_ = probability;
   made.links_ = std::move(links);
   return made;
@@ -151,7 +152,7 @@ double Loss::frame_loss(const PacketOnLink& packet) const {
   return at == links_.end() || before(wanted, *at) ? probability_ : at->probability;
 }
 
-bool Loss::any_lost(const PacketOnLink& packet, std::uint32_t frames) const {
+bool Loss::any_lost(PacketOnLink packet, std::uint32_t frames) const {
   require(frames <= frames_max, "loss: a packet has too many frames");
   const double p = frame_loss(packet);
   if (p <= 0.0 || frames == 0) return false;

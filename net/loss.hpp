@@ -85,9 +85,10 @@ class Loss {
   /// Whether the packet, of `frames` frames, is lost on its link.
   /// @throws BrokenInvariant for an index of 2^48 or more, or more than frames_max frames.
   bool lost(const PacketOnLink& packet, std::uint32_t frames = 1) const {
-    if (model_ == Model::none) return false;
-    const bool plain = model_ == Model::bernoulli && links_.empty() && frames == 1;
-    return plain ? first_frame_draw(packet, draws) < probability_ : any_lost(packet, frames);
+    if (plain_ && frames == 1) [[likely]] {
+      return first_frame_draw(packet, draws) < probability_;
+    }
+    return any_lost(packet, frames);
   }
 
   /// Whether the Gilbert–Elliott channel is in its bad state then; false in other models.
@@ -98,10 +99,12 @@ class Loss {
   // The first frame's draw is the one that packets have had before there were frames.
   static constexpr PurposeOnLink draws{Purpose("loss of a tick"), Purpose("loss of a packet"),
                                        Purpose("loss of a repetition")};
-  bool any_lost(const PacketOnLink& packet, std::uint32_t frames) const;
+  // By value, so that who asks many times in a row may keep the packet in registers.
+  bool any_lost(PacketOnLink packet, std::uint32_t frames) const;
   double frame_loss(const PacketOnLink& packet) const;
 
   Model model_ = Model::none;
+  bool plain_ = false;           // Bernoulli, the same on all links
   double probability_ = 0.0;     // Bernoulli
   std::vector<LinkLoss> links_;  // Bernoulli, sorted by (from, to)
   GilbertElliott chain_;

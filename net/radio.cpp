@@ -13,6 +13,7 @@ namespace hearsay {
 namespace {
 
 constexpr std::uint64_t ticks_max = std::uint64_t{1} << 48;
+constexpr std::size_t fetch_from = 2048;  // fewer radios are in the cache anyway
 
 const RadioOptions& checked(const RadioOptions& options) {
   check(options);
@@ -43,13 +44,10 @@ Radio::~Radio() {
   for (const Station& station : stations_) simulation_.cancel(station.next);
 }
 
-std::size_t Radio::index(AgentId agent, const char* role) const {
-  if (agent < 0 || agent >= channel_.agents()) {
-    throw BrokenInvariant("radio: " + std::string(role) + " " + std::to_string(agent) +
-                          " is not there (agents are 0 … " + std::to_string(channel_.agents() - 1) +
-                          ")");
-  }
-  return static_cast<std::size_t>(agent);
+void Radio::refuse(AgentId agent, const char* role) const {
+  throw BrokenInvariant("radio: " + std::string(role) + " " + std::to_string(agent) +
+                        " is not there (agents are 0 … " + std::to_string(channel_.agents() - 1) +
+                        ")");
 }
 
 void Radio::attach(AgentId agent, Receiver& receiver) {
@@ -84,8 +82,9 @@ void Radio::require_sound(AgentId sender, const Outgoing& packet) const {
   require(!packet.acknowledged || packet.receiver != no_agent,
           "radio: a broadcast cannot be acknowledged");
   require(frames_of(packet.bytes.size()) <= frames_max, "radio: too many frames");
+  if (!options_.queue.bytes_max) return;
   const std::uint64_t bytes = air_bytes(packet.bytes.size());
-  if (options_.queue.bytes_max && bytes > *options_.queue.bytes_max) {
+  if (bytes > *options_.queue.bytes_max) {
     throw InputError("radio: a packet of " + std::to_string(bytes) +
                      " bytes with headers does not fit into a queue of queue_bytes_max = " +
                      std::to_string(*options_.queue.bytes_max));
@@ -127,8 +126,10 @@ void Radio::aim(Transmission& t, bool draws) {
   channel_.aim(t, draws);
   traffic_.sender(t.sender).expected += t.route.size;
   // Who will soon be called: in a large crowd each is far from the one before.
-  for (std::size_t i = 0; i < t.route.size; ++i) {
-    __builtin_prefetch(receivers_[static_cast<std::size_t>(t.route.hearer(i))]);
+  if (receivers_.size() < fetch_from) return;
+  const Route route = t.route;
+  for (std::size_t i = 0; i < route.size; ++i) {
+    __builtin_prefetch(receivers_[static_cast<std::size_t>(route.hearer(i))]);
   }
 }
 
@@ -196,7 +197,7 @@ void Radio::settle_rest(std::uint32_t slot, Fate fate) {
   if (!t.aimed) aim(t, false);
   MessageRow row = t.row(simulation_.now());
   for (; !t.done(); ++t.settled) {
-    traffic_.settle(row, t.route.hearer(t.settled), t.route.link(t.settled), fate);
+    traffic_.settle(row, t.route.ear(t.settled), fate);
   }
   slots_.release(slot);
 }
@@ -210,10 +211,10 @@ void Radio::schedule(std::uint32_t slot) {
   t.event = simulation_.schedule(next, Phase::update, [this, slot] { arrive(slot); });
 }
 
-// What the packet's fate is at a hearer whom it reaches now.
-Fate Radio::fate_now(const Transmission& t, std::size_t i) const {
+// What else becomes of a packet at a hearer whom it reaches now.
+Fate Radio::fate_on_arrival(const Transmission& t, std::size_t i) const {
   Fate fate = t.fates[i];
-  worsen(fate, channel_.on_arrival(t, i));
+  worsen(fate, channel_.fate_on_arrival(t, i));
   if (!up_throughout(t.route.hearer(i), t.start)) worsen(fate, Fate::receiver_down);
   return fate;
 }
@@ -229,18 +230,19 @@ void Radio::deliver(const Packet& packet) {
 void Radio::arrive(std::uint32_t slot) {
   Transmission& t = slots_[slot];
   if (t.acknowledged) return arrive_acknowledged(slot);
+  const Route route = t.route;  // it does not change any more
   MessageRow row = t.row(simulation_.now());
   Packet packet = t.packet(no_agent);
-  while (!t.done()) {
-    const Time time = t.next();
+  while (t.settled < route.size) {
+    const Ear ear = route.ear(t.settled);
+    const Time time = later(t.arrives, ear.delay);
     if (time > row.arrived) {
       if (!simulation_.go_on(time, Phase::update)) return schedule(slot);
       row.arrived = time;
     }
-    const std::size_t i = t.settled++;
-    packet.receiver = t.route.hearer(i);
-    const Fate fate = fate_now(t, i);
-    traffic_.settle(row, packet.receiver, t.route.link(i), fate);
+    const Fate fate = fate_now(t, t.settled++);
+    traffic_.settle(row, ear, fate);
+    packet.receiver = ear.agent;
     if (fate == Fate::delivered) deliver(packet);
   }
   slots_.release(slot);

@@ -144,7 +144,11 @@ class Radio final : private AccessUser {
     return up_since_.empty() || (stations_[a].up && up_since_[a] <= since);
   }
   Station& station(AgentId agent) { return stations_[static_cast<std::size_t>(agent)]; }
-  std::size_t index(AgentId agent, const char* role) const;
+  std::size_t index(AgentId agent, const char* role) const {
+    if (agent < 0 || agent >= channel_.agents()) refuse(agent, role);
+    return static_cast<std::size_t>(agent);
+  }
+  [[noreturn]] void refuse(AgentId agent, const char* role) const;
   std::uint64_t air_bytes(std::uint64_t bytes) const;
   std::uint32_t frames_of(std::uint64_t bytes) const;
   Duration air_time(std::uint64_t bytes);
@@ -159,7 +163,11 @@ class Radio final : private AccessUser {
   void settle_rest(std::uint32_t slot, Fate fate);
   void schedule(std::uint32_t slot);
   void arrive(std::uint32_t slot);
-  Fate fate_now(const Transmission& t, std::size_t i) const;
+  // What the fate of a packet is at the i-th hearer, whom it reaches now.
+  Fate fate_now(const Transmission& t, std::size_t i) const {
+    return channel_.quiet() && up_since_.empty() ? t.fates[i] : fate_on_arrival(t, i);
+  }
+  Fate fate_on_arrival(const Transmission& t, std::size_t i) const;
   void deliver(const Packet& packet);
   // Sending (radio_air.cpp).
   void wake(AgentId sender);

@@ -13,7 +13,7 @@ void Radio::arrive_acknowledged(std::uint32_t slot) {
   if (t.fates[0] == Fate::delivered && !t.done()) {
     t.settled = 1;
     MessageRow row = t.row(simulation_.now());
-    traffic_.settle(row, t.receiver, t.route.link(0), Fate::delivered);
+    traffic_.settle(row, t.route.ear(0), Fate::delivered);
     deliver(t.packet(t.receiver));
   }
   const Time time = later(simulation_.now(), options_.acknowledgement.interframe);
@@ -88,7 +88,7 @@ void Radio::conclude(std::uint32_t slot, bool acknowledged) {
     t.settled = 1;
     MessageRow row = t.row(simulation_.now());
     const Fate fate = t.cut ? Fate::sender_down : t.fates[0];
-    traffic_.settle(row, t.receiver, t.route.link(0), fate);
+    traffic_.settle(row, t.route.ear(0), fate);
   }
   let_go(sender);
   if (Receiver* const receiver = receivers_[static_cast<std::size_t>(sender)]) {

@@ -33,11 +33,11 @@ struct Route {
   const Ear* ears = nullptr;  ///< … unless this is not null
   bool reaches = true;        ///< false: addressed to somebody who cannot hear
 
-  AgentId hearer(std::size_t i) const { return ears ? ears[i].agent : neighbours[i]; }
-  std::uint32_t link(std::size_t i) const {
-    return ears ? ears[i].link : first_link + static_cast<std::uint32_t>(i);
+  Ear ear(std::size_t i) const {
+    if (ears) return ears[i];
+    return {Duration(), neighbours[i], first_link + static_cast<std::uint32_t>(i)};
   }
-  Duration delay(std::size_t i) const { return ears ? ears[i].delay : Duration(); }
+  AgentId hearer(std::size_t i) const { return ears ? ears[i].agent : neighbours[i]; }
 };
 
 /// An absurdly slow radio must not overflow the clock: what would end after the last instant ends
@@ -81,7 +81,7 @@ struct Transmission {
   bool under_way = false;
 
   bool done() const { return settled == route.size; }
-  Time next() const { return later(arrives, done() ? Duration() : route.delay(settled)); }
+  Time next() const { return later(arrives, done() ? Duration() : route.ear(settled).delay); }
   Packet packet(AgentId hearer) const { return {sender, hearer, kind, bytes, sent, rider.get()}; }
   MessageRow row(Time now) const {
     return {sent, now, sender, no_agent, kind, static_cast<std::uint32_t>(bytes.size()), 0};

@@ -10,7 +10,8 @@
 // Three more do the same with one thing added, beside the plain floor: `moving` (Gauss–Markov about
 // 10 m/s, neighbours looked up in a grid when a beacon is sent; with 100,000 radios for 10 s, too),
 // `fading` (log-distance with shadowing, every reception drawn from its SNR) and `sensing` (carrier
-// sense with back-off, frames that overlap collide). Their fates are their own.
+// sense with back-off, frames that overlap collide). Their fates are their own; all that they hold
+// must not be more than 2 GiB.
 
 #include <benchmark/benchmark.h>
 
@@ -46,6 +47,7 @@ constexpr std::size_t beacon_bytes = 200;
 constexpr Duration period = 1_s;
 Time end_of(int agents) { return Time::at(agents > 10'000 ? 10_s : 60_s); }
 constexpr double bytes_per_agent_max = 1024.0;
+constexpr double bytes_max = 2147483648.0;  // of all, with anything added
 
 struct Layout {
   double side_m;
@@ -260,6 +262,7 @@ void beacon(benchmark::State& state, int agents) {
   if (like_floor && outcome.bytes_per_agent > bytes_per_agent_max) {
     state.SkipWithError("more than 1024 bytes an agent");
   }
+  if (outcome.bytes_per_agent * agents > bytes_max) state.SkipWithError("more than 2 GiB");
   if (outcome.bytes_per_agent > 0.0) state.counters["bytes_per_agent"] = outcome.bytes_per_agent;
   const auto deliveries = static_cast<double>(tally.heard + tally.lost);
   state.counters["deliveries"] = deliveries;

@@ -81,6 +81,10 @@ Channel::Channel(Simulation& simulation, Reach reach, const RadioOptions& option
     for (AgentId a = 0; a < topology_.agents(); ++a) {
       for (const AgentId b : topology_.neighbours(a)) link_quality_.push_back(quality(a, b, 0.0));
     }
+    frame_success_.reserve(link_quality_.size());
+    for (const LinkQuality& link : link_quality_) {
+      frame_success_.push_back({frame_success(link, 0), 0});
+    }
   }
   if (jitter_.law != JitterOptions::Law::none && !jitter_.reordering) {
     link_arrival_.resize(topology_.links());
@@ -219,18 +223,26 @@ double Channel::power_dbm(AgentId from, AgentId to) const {
                                    propagation_.shadowing_db(simulation_.seed(), from, to));
 }
 
-// Whether the distance lets all frames through.
-bool Channel::heard(PacketOnLink packet, const Transmission& t, double interference_mw) const {
+FrameSizes Channel::frame_sizes(const Transmission& t) const {
   const auto bytes = static_cast<std::uint32_t>(t.bytes.size());
   const std::uint32_t before_last = (t.frames - 1) * mtu_bytes_;
-  const FrameSizes sizes{.frames = t.frames,
-                         .frame_bytes = mtu_bytes_ + header_bytes_,
-                         .last_bytes = bytes - before_last + header_bytes_};
-  if (interference_mw == 0.0 && !link_quality_.empty()) {
-    const std::int64_t link = topology_.link(packet.from, packet.to);
-    return packet_heard(link_quality_[static_cast<std::size_t>(link)], packet, sizes);
+  return {.frames = t.frames,
+          .frame_bytes = mtu_bytes_ + header_bytes_,
+          .last_bytes = bytes - before_last + header_bytes_};
+}
+
+// Whether the distance lets all frames through, with nobody who jams.
+bool Channel::heard(PacketOnLink packet, const Transmission& t, std::uint32_t link) {
+  const FrameSizes sizes = frame_sizes(t);
+  if (link_quality_.empty()) {
+    return packet_heard(quality(packet.from, packet.to, 0.0), packet, sizes);
   }
-  return packet_heard(quality(packet.from, packet.to, interference_mw), packet, sizes);
+  if (sizes.frames > 1) return packet_heard(link_quality_[link], packet, sizes);
+  FrameSuccess& known = frame_success_[link];
+  if (known.bytes != sizes.last_bytes) {
+    known = {frame_success(link_quality_[link], sizes.last_bytes), sizes.last_bytes};
+  }
+  return first_frame_heard(known.success, packet);
 }
 
 void Channel::aim(Transmission& t, bool draws) {
@@ -259,7 +271,7 @@ void Channel::aim(Transmission& t, bool draws) {
     if (numbered) t.numbers.push_back(packet.index);
     fates[i] = Fate::delivered;
     if (lossy) fates[i] = fate_if(loss_.lost(packet, frames));
-    if (fading && fates[i] == Fate::delivered && !heard(packet, t, 0.0)) fates[i] = Fate::lost;
+    if (fading && fates[i] == Fate::delivered && !heard(packet, t, ear.link)) fates[i] = Fate::lost;
   }
   if (t.receiver != no_agent) t.index = packet.index;
 }
@@ -269,7 +281,8 @@ Fate Channel::repeat(Transmission& t) {
   if (!t.route.reaches) return Fate::out_of_range;
   PacketOnLink packet = on_link(t, t.receiver, t.index);
   packet.repetition = static_cast<std::uint32_t>(t.repetition);
-  const bool gone = loss_.lost(packet, t.frames) || (!certain_ && !heard(packet, t, 0.0));
+  const bool gone =
+      loss_.lost(packet, t.frames) || (!certain_ && !heard(packet, t, t.route.ear(0).link));
   return gone ? Fate::lost : Fate::delivered;
 }
 
@@ -298,7 +311,8 @@ Fate Channel::fate_on_arrival(const Transmission& t, std::size_t i) const {
   if (noise_mw <= 0.0) return Fate::delivered;
   PacketOnLink packet = on_link(t, hearer, t.numbers[i]);
   packet.repetition = static_cast<std::uint32_t>(t.repetition);
-  return heard(packet, t, noise_mw) ? Fate::delivered : Fate::jammed;
+  const LinkQuality jammed = quality(t.sender, hearer, noise_mw);
+  return packet_heard(jammed, packet, frame_sizes(t)) ? Fate::delivered : Fate::jammed;
 }
 
 void Channel::launch(Transmission& t) {

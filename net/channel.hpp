@@ -101,7 +101,8 @@ class Channel {
   std::uint32_t number(AgentId from, AgentId to);
   PacketOnLink on_link(const Transmission& t, AgentId to, std::uint64_t index) const;
   LinkQuality quality(AgentId from, AgentId to, double interference_mw) const;
-  bool heard(PacketOnLink packet, const Transmission& t, double interference_mw) const;
+  FrameSizes frame_sizes(const Transmission& t) const;
+  bool heard(PacketOnLink packet, const Transmission& t, std::uint32_t link);
   void schedule_change();
 
   Simulation& simulation_;
@@ -130,7 +131,14 @@ class Channel {
   // The neighbours of each sender in order of arrival, rows as in the topology. Empty if the way
   // takes no time: then they hear at once.
   std::vector<Ear> ears_;
-  std::vector<LinkQuality> link_quality_;           // of radios that stand, unless certain
+  // Of radios that stand, unless certain, a link: its quality, and the success of a frame of the
+  // size that was last asked for.
+  std::vector<LinkQuality> link_quality_;
+  struct FrameSuccess {
+    double success;
+    std::uint32_t bytes;
+  };
+  std::vector<FrameSuccess> frame_success_;
   std::map<std::uint64_t, std::uint32_t> numbers_;  // of links of moving radios, by both ends
   std::vector<std::uint64_t> link_packets_;         // packets without tick so far, a link
   std::vector<Time> link_arrival_;  // in-order jitter: when the next may arrive at the earliest

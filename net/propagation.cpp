@@ -168,11 +168,16 @@ bool frame_heard(const LinkQuality& quality, const PacketOnLink& packet, std::ui
                  std::uint32_t frame_bytes) {
   require(frame < frames_max, "propagation: a packet has too many frames");
   const double success = frame_success(quality, frame_bytes);
+  if (frame == 0) return first_frame_heard(success, packet);
   if (success <= 0.0 || success >= 1.0) return success >= 1.0;
-  if (frame == 0) return first_frame_draw(packet, reception) < success;
   FrameDraws draws(packet, reception);
   for (std::uint32_t f = 0; f < frame; ++f) draws.next();
   return draws.next() < success;
+}
+
+bool first_frame_heard(double success, const PacketOnLink& packet) {
+  if (success <= 0.0 || success >= 1.0) return success >= 1.0;
+  return first_frame_draw(packet, reception) < success;
 }
 
 bool packet_heard(const LinkQuality& quality, const PacketOnLink& packet, const FrameSizes& sizes) {

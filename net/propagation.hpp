@@ -119,6 +119,9 @@ double frame_success(const LinkQuality& quality, std::uint32_t frame_bytes);
 bool frame_heard(const LinkQuality& quality, const PacketOnLink& packet, std::uint32_t frame,
                  std::uint32_t frame_bytes);
 
+/// The same of frame 0, of which the success is known.
+bool first_frame_heard(double success, const PacketOnLink& packet);
+
 /// Whether all frames of the packet are heard.
 /// @throws BrokenInvariant for more than frames_max frames.
 bool packet_heard(const LinkQuality& quality, const PacketOnLink& packet, const FrameSizes& sizes);

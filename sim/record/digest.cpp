@@ -1,6 +1,12 @@
 #include "sim/record/digest.hpp"
 
+// With this header the library chooses the widest vectors that the processor has, when it runs.
+// The values are the same. (It is only there where the library was built with that choice.)
+#if defined(__x86_64__) && __has_include(<xxh_x86dispatch.h>)
+#include <xxh_x86dispatch.h>
+#else
 #include <xxhash.h>
+#endif
 
 #include <new>
 

@@ -27,7 +27,7 @@ MAY_INCLUDE = {
 THIRD_PARTIES = {
     "sim/math": ["sleef.h"],
     "sim/kernel": ["Random123/"],
-    "sim/record": ["SQLiteCpp/", "sqlite3.h", "xxhash.h", "fmt/"],
+    "sim/record": ["SQLiteCpp/", "sqlite3.h", "xxhash.h", "xxh_x86dispatch.h", "fmt/"],
     "filters": ["Eigen/"],
     "agents": ["Eigen/"],
     "scenarios": ["toml++/", "boost/tokenizer.hpp", "fmt/"],

@@ -133,7 +133,7 @@ class CarrierSense final : public Access, public AirListener {
   }
 
  private:
-  struct Station {
+  struct alignas(64) Station {  // a line of the cache
     EventId grant;
     Time counts_from;  // when the first of `slots` begins
     Time sends_at;

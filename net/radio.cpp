@@ -130,6 +130,7 @@ void Radio::aim(Transmission& t, bool draws) {
   const Route route = t.route;
   for (std::size_t i = 0; i < route.size; ++i) {
     __builtin_prefetch(receivers_[static_cast<std::size_t>(route.hearer(i))]);
+    if (receptions_) receptions_->expect(route.hearer(i));
   }
 }
 

@@ -13,26 +13,39 @@ void Receptions::begin(AgentId hearer, Fate& fate, double power_dbm, const OnAir
   const bool was_taken = taken(ears);
   if (ears.sends_until > span.begin && options_.half_duplex) worsen(fate, Fate::half_duplex);
   if (options_.collisions) {
-    for (const Frame& other : ears.frames) {
-      if (other.end <= span.begin) continue;
+    ears.each([&](const Frame& other) {
+      if (other.end <= span.begin) return;
       ears.garbled = true;
       if (!(power_dbm >= other.power_dbm + options_.capture_db)) worsen(fate, Fate::collided);
       if (!(other.power_dbm >= power_dbm + options_.capture_db)) {
         worsen(*other.fate, Fate::collided);
       }
-    }
+    });
   }
-  ears.frames.push_back({&fate, power_dbm, span.end});
+  const Frame frame{&fate, power_dbm, span.end};
+  if (ears.first.fate == nullptr) {
+    ears.first = frame;
+  } else {
+    ears.others.push_back(frame);
+  }
   if (!was_taken && listener_) listener_->air_taken(hearer);
 }
 
 void Receptions::end(AgentId hearer, const Fate& fate) {
   Ears& ears = radios_[index(hearer)];
-  const auto frame = std::find_if(ears.frames.begin(), ears.frames.end(),
-                                  [&](const Frame& f) { return f.fate == &fate; });
-  require(frame != ears.frames.end(), "radio: the end of a frame that nobody heard begin");
-  *frame = ears.frames.back();
-  ears.frames.pop_back();
+  Frame* gone = &ears.first;
+  if (gone->fate != &fate) {
+    const auto other = std::find_if(ears.others.begin(), ears.others.end(),
+                                    [&](const Frame& f) { return f.fate == &fate; });
+    require(other != ears.others.end(), "radio: the end of a frame that nobody heard begin");
+    gone = &*other;
+  }
+  if (ears.others.empty()) {
+    *gone = Frame();
+  } else {
+    *gone = ears.others.back();
+    ears.others.pop_back();
+  }
   maybe_free(hearer);
 }
 
@@ -42,9 +55,9 @@ void Receptions::begin_sending(AgentId radio, const OnAir& span) {
   ++ears.sending;
   ears.sends_until = std::max(ears.sends_until, span.end);
   if (options_.half_duplex) {
-    for (const Frame& frame : ears.frames) {
+    ears.each([&](const Frame& frame) {
       if (frame.end > span.begin) worsen(*frame.fate, Fate::half_duplex);
-    }
+    });
   }
   if (!was_taken && listener_) listener_->air_taken(radio);
 }
@@ -60,7 +73,8 @@ void Receptions::clear() {
   for (std::size_t radio = 0; radio < radios_.size(); ++radio) {
     Ears& ears = radios_[radio];
     const bool was_taken = taken(ears);
-    ears.frames.clear();
+    ears.first = Frame();
+    ears.others.clear();
     ears.sending = 0;
     ears.sends_until = Time();
     if (was_taken) maybe_free(static_cast<AgentId>(radio));

@@ -67,6 +67,8 @@ class Receptions {
   /// happens to the frame there. `power_dbm` matters for capture alone.
   void begin(AgentId hearer, Fate& fate, double power_dbm, const OnAir& span);
   void end(AgentId hearer, const Fate& fate);
+  /// A frame will soon begin there: asks the cache for what that needs.
+  void expect(AgentId hearer) const { __builtin_prefetch(&radios_[index(hearer)]); }
   void begin_sending(AgentId radio, const OnAir& span);
   void end_sending(AgentId radio);
   /// Takes everything off the air.
@@ -78,18 +80,25 @@ class Receptions {
 
  private:
   struct Frame {
-    Fate* fate;
-    double power_dbm;
+    Fate* fate = nullptr;  // null: no frame
+    double power_dbm = 0.0;
     Time end;
   };
-  struct Ears {
-    std::vector<Frame> frames;  // on the air here; their order does not matter
+  struct alignas(64) Ears {     // a line of the cache
+    Frame first;                // on the air here: most frames are alone
+    std::vector<Frame> others;  // beside a first; their order does not matter
     Time sends_until;
     int sending = 0;  // frames; 2 between the begin of one and the end of another at one instant
     bool garbled = false;
+    /// Calls visit(frame) for each that is on the air here.
+    template <class Visit>
+    void each(Visit visit) const {
+      if (first.fate != nullptr) visit(first);
+      for (const Frame& frame : others) visit(frame);
+    }
   };
   static std::size_t index(AgentId radio) { return static_cast<std::size_t>(radio); }
-  static bool taken(const Ears& ears) { return ears.sending > 0 || !ears.frames.empty(); }
+  static bool taken(const Ears& ears) { return ears.sending > 0 || ears.first.fate != nullptr; }
   void maybe_free(AgentId radio);
 
   Options options_;

@@ -1,0 +1,89 @@
+#include "filters/gaussian/transition.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "filters/gaussian/symmetric.hpp"
+#include "sim/kernel/error.hpp"
+
+namespace hearsay::gaussian {
+namespace {
+
+using Decomposition = Eigen::PartialPivLU<Matrix>;
+
+/// G (n×n) with Ω = GGᵀ; nothing if there is none, for Ω is indefinite or not finite.
+std::optional<Matrix> root(const Matrix& omega) {
+  const Scaled scaled = scale(omega);
+  Matrix g;
+  if (scaled.definiteness == Definiteness::positive && scaled.cholesky.size() > 0) {
+    g = scaled.cholesky;
+  } else if (scaled.definiteness == Definiteness::indefinite ||
+             scaled.definiteness == Definiteness::overflow) {
+    return std::nullopt;
+  } else {
+    const Eigenpairs pairs = eigenpairs(scaled.matrix);
+    g = pairs.vectors;
+    for (Eigen::Index j = 0; j < g.cols(); ++j)
+      g.col(j) *= std::sqrt(std::max(pairs.values(j), 0.0));
+  }
+  scale_rows(g, scaled.factor.cwiseInverse());
+  return g;
+}
+
+Matrix product(const Matrix& a, const Matrix& b) { return a.lazyProduct(b); }
+
+}  // namespace
+
+Transition white_noise_acceleration(int axes, double dt_s, double q) {
+  require(axes >= 1 && 2 * axes <= dimension_max, "white-noise acceleration: 1 to 4 axes");
+  require(dt_s > 0.0 && q > 0.0 && std::isfinite(dt_s) && std::isfinite(q),
+          "white-noise acceleration: dt and q must be positive");
+  const int n = 2 * axes;
+  Transition t{Matrix::Identity(n, n), Matrix::Zero(n, n)};
+  for (int p = 0; p < axes; ++p) {
+    const int v = p + axes;
+    t.A(p, v) = dt_s;
+    t.R(p, p) = q * dt_s * dt_s * dt_s / 3.0;
+    t.R(p, v) = t.R(v, p) = q * dt_s * dt_s / 2.0;
+    t.R(v, v) = q * dt_s;
+  }
+  return t;
+}
+
+// With Ψ = GGᵀ, (I + ΨR)⁻¹Ψ = G(I + GᵀRG)⁻¹Gᵀ: what is inverted is never worse than the identity,
+// and nothing is subtracted.
+Belief predict(const Belief& belief, const Transition& transition) {
+  const Eigen::Index n = belief.dimension();
+  const Matrix& R = transition.R;
+  require(transition.A.rows() == n && transition.A.cols() == n && R.rows() == n && R.cols() == n,
+          "predict: dimensions differ");
+  const Matrix At = transition.A.transpose();
+  const Decomposition lu(At);
+  require(std::fabs(lu.determinant()) > 0.0, "predict: A is not invertible");
+  const Matrix moved = lu.solve(Matrix(belief.xi));  // A⁻ᵀξ
+  const Matrix identity = Matrix::Identity(n, n);
+  if (const auto omega_root = root(belief.omega)) {
+    const Matrix G = lu.solve(*omega_root);  // A⁻ᵀG_Ω
+    const Matrix RG = product(R, G);
+    const Scaled middle = scale(identity + product(G.transpose(), RG));
+    if (middle.cholesky.size() > 0) {
+      // W = L⁻¹D Gᵀ, so that WᵀW = G(I + GᵀRG)⁻¹Gᵀ.
+      Matrix W = G.transpose();
+      scale_rows(W, middle.factor);
+      solve_lower(middle.cholesky, W);
+      Matrix w = product(RG.transpose(), moved);
+      scale_rows(w, middle.factor);
+      solve_lower(middle.cholesky, w);
+      return {gram(W), moved - product(W.transpose(), w)};
+    }
+  }
+  // A belief that a faulty rule made indefinite: what its user would compute.
+  const Matrix half = lu.solve(belief.omega);             // A⁻ᵀΩ
+  const Matrix psi = lu.solve(Matrix(half.transpose()));  // A⁻ᵀΩA⁻¹
+  const Decomposition general(identity + product(psi, R));
+  const Matrix omega = general.solve(psi);
+  return {0.5 * (omega + omega.transpose()), Vector(general.solve(moved))};
+}
+
+}  // namespace hearsay::gaussian

@@ -9,7 +9,7 @@ namespace {
 constexpr std::string_view exact_ledger =
     "exact for static linear-Gaussian problems while sending does not depend on measured values";
 
-constexpr std::array<RuleInfo, 7> table = {{
+constexpr std::array<RuleInfo, 11> table = {{
     {Rule::none, "none", Sends::nothing, Memory::nothing,
      "nothing: an agent believes only what it measured itself",
      "always, as far as its own measurements are", exact_ledger,
@@ -41,6 +41,22 @@ constexpr std::array<RuleInfo, 7> table = {{
      "both beliefs are conservative; nothing about what they share; one unit on all axes",
      "always, for any correlation; price: independent information is not added", exact_ledger,
      "Julier & Uhlmann 1997; Merino 2007, eq. 3.43-3.46"},
+    {Rule::ci_half, "ci-half", Sends::belief, Memory::nothing,
+     "both beliefs are conservative; nothing about what they share",
+     "always, for any correlation; a poor belief that is heard makes a good one worse",
+     exact_ledger, "Merino 2007, eq. 3.45-3.46 with a fixed weight"},
+    {Rule::ci_niehsen, "ci-niehsen", Sends::belief, Memory::nothing,
+     "both beliefs are conservative; nothing about what they share; one unit on all axes",
+     "always, for any correlation; looser than ci-trace, and costs two factorisations",
+     exact_ledger, "W. Niehsen, FUSION 2002"},
+    {Rule::ci_franken_huepper, "ci-franken-huepper", Sends::belief, Memory::nothing,
+     "both beliefs are conservative; nothing about what they share",
+     "always, for any correlation; looser than ci-det, and costs three factorisations",
+     exact_ledger, "D. Franken, A. Hupper, FUSION 2005"},
+    {Rule::most_certain, "most-certain", Sends::belief, Memory::nothing,
+     "both beliefs are conservative; the one of less entropy is taken whole",
+     "always, for any correlation; price: nothing is ever combined", exact_ledger,
+     "dictatorship by least entropy: Merino 2007, section 4.3"},
 }};
 
 bool finite(const Belief& belief) { return all_finite(belief.omega) && all_finite(belief.xi); }
@@ -83,6 +99,14 @@ Coefficients coefficients(Rule rule, const Belief& own, const Belief& received) 
       return weighted(intersect_det(own.omega, received.omega));
     case Rule::ci_trace:
       return weighted(intersect_trace(own.omega, received.omega));
+    case Rule::ci_half:
+      return weighted(intersect_half(own.omega, received.omega));
+    case Rule::ci_niehsen:
+      return weighted(intersect_niehsen(own.omega, received.omega));
+    case Rule::ci_franken_huepper:
+      return weighted(intersect_franken_huepper(own.omega, received.omega));
+    case Rule::most_certain:
+      return weighted(most_certain(own.omega, received.omega));
     case Rule::none:
       break;
   }

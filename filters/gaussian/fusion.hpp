@@ -5,15 +5,18 @@
 // with coefficients that depend on the matrices alone. Whatever rides along with a belief (the
 // rumour ledger) is combined with the same coefficients, so it cannot disagree with the rule.
 //
-//   rule            sends             a, b, c                   remembers for each neighbour
-//   none            nothing           1, 0, 0                   nothing
-//   naive           own               1, 1, 0                   nothing
-//   local-update    own measurements  1, 1, 0                   nothing
-//                   since it last sent
-//   channel         own               1, 1, 1                   common: last belief sent or
-//   received channel-robust  own − heard       1, 1, 1                   common: last message heard
-//   from it ci-det          own               ω, 1−ω, 0 by max |Ω|      nothing ci-trace        own
-//   ω, 1−ω, 0 by min tr Σ     nothing
+//   rule                sends             a, b, c                 remembers for each neighbour
+//   none                nothing           1, 0, 0                 nothing
+//   naive               own               1, 1, 0                 nothing
+//   local-update        own measurements  1, 1, 0                 nothing
+//                       since it last sent
+//   channel             own               1, 1, 1                 common: last belief sent or heard
+//   channel-robust      own − heard       1, 1, 1                 common: last message heard from
+//   it ci-det              own               ω, 1−ω, 0 by max |Ω|    nothing ci-trace own ω, 1−ω, 0
+//   by min tr Σ   nothing ci-half             own               ½, ½, 0                 nothing
+//   ci-niehsen          own               ω ∝ 1/tr Σ              nothing
+//   ci-franken-huepper  own               ω from determinants     nothing
+//   most-certain        own               1, 0, 0 or 0, 1, 0      nothing
 #pragma once
 
 #include <array>
@@ -25,7 +28,19 @@
 
 namespace hearsay::gaussian {
 
-enum class Rule { none, naive, local_update, channel, channel_robust, ci_det, ci_trace };
+enum class Rule {
+  none,
+  naive,
+  local_update,
+  channel,
+  channel_robust,
+  ci_det,
+  ci_trace,
+  ci_half,
+  ci_niehsen,
+  ci_franken_huepper,
+  most_certain,
+};
 
 /// What a rule sends and to whom.
 enum class Sends {
@@ -90,5 +105,19 @@ struct Intersection {
 };
 Intersection intersect_det(const Matrix& omega_a, const Matrix& omega_b);
 Intersection intersect_trace(const Matrix& omega_a, const Matrix& omega_b);
+
+// Weights without a search. Where one side is no belief or knows nothing the answer is that of the
+// two above; any ω keeps the result conservative.
+
+/// ω = ½.
+Intersection intersect_half(const Matrix& omega_a, const Matrix& omega_b);
+/// ω ∝ 1/tr Σ: by trace as above where one of them has none. Niehsen 2002.
+Intersection intersect_niehsen(const Matrix& omega_a, const Matrix& omega_b);
+/// ω = (|I| − |I−Ω_a| + |Ω_a|)/(2|I| + …) with I = Ω_a + Ω_b; by determinant as above where I is
+/// singular. Fränken & Hüpper 2005.
+Intersection intersect_franken_huepper(const Matrix& omega_a, const Matrix& omega_b);
+/// ω = 1 or 0: the belief of less entropy, own if equal. Both singular: own, `skipped` = "both
+/// beliefs are singular".
+Intersection most_certain(const Matrix& omega_a, const Matrix& omega_b);
 
 }  // namespace hearsay::gaussian

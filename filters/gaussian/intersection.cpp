@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "filters/gaussian/fusion.hpp"
+#include "filters/gaussian/intersection.hpp"
 #include "filters/gaussian/regular_pair.hpp"
 #include "filters/gaussian/symmetric.hpp"
 #include "sim/kernel/error.hpp"
@@ -31,34 +31,7 @@ struct Pair {
   Directions directions;
 };
 
-void require_equal_dimensions(const Matrix& a, const Matrix& b) {
-  require(a.rows() == b.rows() && a.rows() >= 1, "intersect: dimensions differ");
-}
-
 double largest(const Matrix& m) { return m.size() == 0 ? 0.0 : m.cwiseAbs().maxCoeff(); }
-
-std::optional<Intersection> decided(const Scaled& a, const Scaled& b, const Matrix& omega_a,
-                                    const Matrix& omega_b) {
-  if (a.definiteness == Definiteness::overflow || b.definiteness == Definiteness::overflow) {
-    return Intersection{1.0, "overflow"};
-  }
-  if (a.definiteness == Definiteness::indefinite) {
-    return Intersection{1.0, "own belief is indefinite"};
-  }
-  if (b.definiteness == Definiteness::indefinite) {
-    return Intersection{1.0, "received belief is indefinite"};
-  }
-  if (a.rank == 0 && b.rank == 0) return Intersection{0.5, nullptr};
-  const double size_a = largest(omega_a);
-  const double size_b = largest(omega_b);
-  if (b.rank == 0 || (!a.invertible() && size_b <= negligible * size_a)) {
-    return Intersection{1.0, nullptr};
-  }
-  if (a.rank == 0 || (!b.invertible() && size_a <= negligible * size_b)) {
-    return Intersection{0.0, nullptr};
-  }
-  return std::nullopt;
-}
 
 /// Wᵀ m W.
 Matrix congruence(const Matrix& m, const Matrix& w) {
@@ -224,6 +197,33 @@ Pair prepared(const Matrix& omega_a, const Matrix& omega_b, const SlopeAt& slope
 }
 
 }  // namespace
+
+void require_equal_dimensions(const Matrix& a, const Matrix& b) {
+  require(a.rows() == b.rows() && a.rows() >= 1, "intersect: dimensions differ");
+}
+
+std::optional<Intersection> decided(const Scaled& a, const Scaled& b, const Matrix& omega_a,
+                                    const Matrix& omega_b) {
+  if (a.definiteness == Definiteness::overflow || b.definiteness == Definiteness::overflow) {
+    return Intersection{1.0, "overflow"};
+  }
+  if (a.definiteness == Definiteness::indefinite) {
+    return Intersection{1.0, "own belief is indefinite"};
+  }
+  if (b.definiteness == Definiteness::indefinite) {
+    return Intersection{1.0, "received belief is indefinite"};
+  }
+  if (a.rank == 0 && b.rank == 0) return Intersection{0.5, nullptr};
+  const double size_a = largest(omega_a);
+  const double size_b = largest(omega_b);
+  if (b.rank == 0 || (!a.invertible() && size_b <= negligible * size_a)) {
+    return Intersection{1.0, nullptr};
+  }
+  if (a.rank == 0 || (!b.invertible() && size_a <= negligible * size_b)) {
+    return Intersection{0.0, nullptr};
+  }
+  return std::nullopt;
+}
 
 Intersection intersect_det(const Matrix& omega_a, const Matrix& omega_b) {
   require_equal_dimensions(omega_a, omega_b);

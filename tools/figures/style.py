@@ -26,6 +26,7 @@ _RULES = {
     "channel-robust": (GREEN, "s"),
     "ci-det": (BLUE, "o"),
     "ci-trace": (SKY, "D"),
+    "most-certain": (PURPLE, "P"),
 }
 _OTHERS = ((PURPLE, "P"), (BLACK, "*"), (GREY, "h"), (PURPLE, "<"), (BLACK, ">"))
 

@@ -31,6 +31,10 @@ constexpr Character characters[] = {
     {Rule::channel_robust, false, true, false},
     {Rule::ci_det, true, true, true},
     {Rule::ci_trace, true, true, true},
+    {Rule::ci_half, true, true, true},
+    {Rule::ci_niehsen, true, true, true},
+    {Rule::ci_franken_huepper, true, true, true},
+    {Rule::most_certain, true, true, true},
 };
 
 class EveryRule : public testing::TestWithParam<RuleInfo> {

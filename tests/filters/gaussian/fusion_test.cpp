@@ -87,8 +87,9 @@ TEST(FusionRules, TheTableIsComplete) {
     }
     EXPECT_EQ(row.sends == Sends::nothing, row.rule == Rule::none);
   }
-  EXPECT_EQ(names, (std::set<std::string_view>{"none", "naive", "local-update", "channel",
-                                               "channel-robust", "ci-det", "ci-trace"}));
+  EXPECT_EQ(names, (std::set<std::string_view>{
+                       "none", "naive", "local-update", "channel", "channel-robust", "ci-det",
+                       "ci-trace", "ci-half", "ci-niehsen", "ci-franken-huepper", "most-certain"}));
   EXPECT_EQ(info(Rule::channel).memory, Memory::last_exchanged);
   EXPECT_EQ(info(Rule::channel_robust).memory, Memory::last_heard);
   EXPECT_EQ(info(Rule::channel_robust).sends, Sends::belief_less_heard);

@@ -141,6 +141,7 @@ void StaticGaussianEstimator::fuse(int subject, Neighbour& from, const Belief& b
                                    const Ledger* ledger) {
   const auto s = static_cast<std::size_t>(subject);
   TrackedBelief& own = own_[s];
+  if (rule_.directional) return fuse_by_direction(own, belief, ledger);
   TrackedBelief* memory = rule_.memory == Memory::nothing ? nullptr : &from.memory[s];
   const gaussian::Coefficients k = gaussian::coefficients(options_.rule, own.belief, belief);
   if (k.skipped != nullptr) {
@@ -166,6 +167,22 @@ void StaticGaussianEstimator::fuse(int subject, Neighbour& from, const Belief& b
     if (ledger != nullptr) memory->ledger = *ledger;
   }
   note_gain(before, belief, own.belief);
+}
+
+void StaticGaussianEstimator::fuse_by_direction(TrackedBelief& own, const Belief& belief,
+                                                const Ledger* ledger) {
+  const gaussian::DirectionalFusion fusion =
+      gaussian::fuse_by_direction(options_.rule, own.belief, belief);
+  if (fusion.skipped != nullptr) {
+    ++counts_.skipped;
+    return;
+  }
+  ++counts_.fusions;
+  note_gain(own.belief, belief, fusion.belief);
+  own.belief = fusion.belief;
+  if (keeps_ledger() && ledger != nullptr) {
+    own.ledger.combine(fusion.own, fusion.received, *ledger);
+  }
 }
 
 void StaticGaussianEstimator::note_gain(const Belief& before, const Belief& received,

@@ -120,6 +120,7 @@ class StaticGaussianEstimator {
   Neighbour make_neighbour(AgentId id) const;
   bool outdated(Neighbour& from, const gaussian::Message& message) const;
   void fuse(int subject, Neighbour& from, const gaussian::Belief& belief, const Ledger* ledger);
+  void fuse_by_direction(TrackedBelief& own, const gaussian::Belief& belief, const Ledger* ledger);
   void note_gain(const gaussian::Belief& before, const gaussian::Belief& received,
                  const gaussian::Belief& after);
   bool keeps_ledger() const { return options_.ledgers != nullptr; }

@@ -9,7 +9,7 @@ namespace {
 constexpr std::string_view exact_ledger =
     "exact for static linear-Gaussian problems while sending does not depend on measured values";
 
-constexpr std::array<RuleInfo, 11> table = {{
+constexpr std::array<RuleInfo, 13> table = {{
     {Rule::none, "none", Sends::nothing, Memory::nothing,
      "nothing: an agent believes only what it measured itself",
      "always, as far as its own measurements are", exact_ledger,
@@ -57,6 +57,14 @@ constexpr std::array<RuleInfo, 11> table = {{
      "both beliefs are conservative; the one of less entropy is taken whole",
      "always, for any correlation; price: nothing is ever combined", exact_ledger,
      "dictatorship by least entropy: Merino 2007, section 4.3"},
+    {Rule::inverse_ci, "inverse-ci", Sends::belief, Memory::nothing,
+     "what both have in common is information of either, independent of the rest of both",
+     "where that is so; not for any correlation", exact_ledger,
+     "B. Noack, J. Sijs, M. Reinhardt, U. D. Hanebeck, Automatica 79, 2017", true},
+    {Rule::ellipsoidal, "ellipsoidal", Sends::belief, Memory::nothing,
+     "along each direction the better belief contains the other",
+     "not in general: it claims the better of both in every direction", exact_ledger,
+     "J. Sijs, M. Lazar, P. P. J. van den Bosch, ACC 2010", true},
 }};
 
 bool finite(const Belief& belief) { return all_finite(belief.omega) && all_finite(belief.xi); }
@@ -108,9 +116,22 @@ Coefficients coefficients(Rule rule, const Belief& own, const Belief& received) 
     case Rule::most_certain:
       return weighted(most_certain(own.omega, received.omega));
     case Rule::none:
+    case Rule::inverse_ci:
+    case Rule::ellipsoidal:
       break;
   }
   throw BrokenInvariant("coefficients: a fusion rule without coefficients");
+}
+
+DirectionalFusion fuse_by_direction(Rule rule, const Belief& own, const Belief& received) {
+  require(own.dimension() == received.dimension(), "fuse_by_direction: dimensions differ");
+  if (!finite(own) || !finite(received)) {
+    const int n = own.dimension();
+    return {own, Matrix::Identity(n, n), Matrix::Zero(n, n), "overflow"};
+  }
+  if (rule == Rule::inverse_ci) return fuse_by_inverse_intersection(own, received);
+  if (rule == Rule::ellipsoidal) return fuse_by_ellipsoids(own, received);
+  throw BrokenInvariant("fuse_by_direction: a rule that does not");
 }
 
 }  // namespace hearsay::gaussian

@@ -1,8 +1,9 @@
 // Fusion rules for Gaussian beliefs in information form, as data.
 //
-// Every rule here is a linear combination of beliefs:
+// Most rules are a linear combination of beliefs:
 //     fused = a·own + b·received − c·common,
-// with coefficients that depend on the matrices alone. Whatever rides along with a belief (the
+// with coefficients that depend on the matrices alone; some weigh direction by direction
+// (filters/gaussian/directional.hpp). Whatever rides along with a belief (the
 // rumour ledger) is combined with the same coefficients, so it cannot disagree with the rule.
 //
 //   rule                sends             a, b, c                 remembers for each neighbour
@@ -17,6 +18,8 @@
 //   ci-niehsen          own               ω ∝ 1/tr Σ              nothing
 //   ci-franken-huepper  own               ω from determinants     nothing
 //   most-certain        own               1, 0, 0 or 0, 1, 0      nothing
+//   inverse-ci          own               by direction            nothing
+//   ellipsoidal         own               by direction            nothing
 #pragma once
 
 #include <array>
@@ -25,6 +28,7 @@
 #include <string_view>
 
 #include "filters/gaussian/belief.hpp"
+#include "filters/gaussian/directional.hpp"
 
 namespace hearsay::gaussian {
 
@@ -40,6 +44,8 @@ enum class Rule {
   ci_niehsen,
   ci_franken_huepper,
   most_certain,
+  inverse_ci,
+  ellipsoidal,
 };
 
 /// What a rule sends and to whom.
@@ -67,6 +73,7 @@ struct RuleInfo {
   std::string_view conservative;  ///< when it is conservative
   std::string_view ledger;        ///< where the ledger's true covariance is exact
   std::string_view source;
+  bool directional = false;  ///< fuse_by_direction() instead of coefficients()
 };
 std::span<const RuleInfo> rules();
 const RuleInfo& info(Rule rule);
@@ -84,8 +91,12 @@ struct Coefficients {
 
 /// The coefficients of `rule` for these two beliefs of equal dimension. Every rule but `none` keeps
 /// its own belief, `skipped` = "overflow", if either belief is not finite.
-/// @throws BrokenInvariant if the dimensions differ.
+/// @throws BrokenInvariant if the dimensions differ, or for a directional rule.
 Coefficients coefficients(Rule rule, const Belief& own, const Belief& received);
+
+/// What a directional rule makes of these two beliefs of equal dimension; `skipped` as above.
+/// @throws BrokenInvariant if the dimensions differ, or for another rule.
+DirectionalFusion fuse_by_direction(Rule rule, const Belief& own, const Belief& received);
 
 /// ω in [0, 1] of covariance intersection Ω = ωΩ_a + (1−ω)Ω_b, ξ likewise.
 /// Equal matrices, all generalised eigenvalues one (1e-12): ω = ½.

@@ -131,12 +131,6 @@ bool all_equal(const Directions& d) {
   return true;
 }
 
-/// A decreasing function of ω on [0, 1], infinite only at the ends, and its derivative.
-struct Slope {
-  double value;
-  double derivative;
-};
-
 /// d/dω of log |Ω|.
 Slope determinant_slope(const Directions& d, double omega) {
   Slope slope{0.0, 0.0};
@@ -158,25 +152,6 @@ Slope trace_slope(const Directions& d, double omega) {
     slope.derivative -= 2.0 * d.g(i) * u * u / f;
   }
   return slope;
-}
-
-/// The zero of a decreasing slope: Newton, with bisection where it leaves the bracket.
-template <typename SlopeAt>
-double zero_of(const SlopeAt& slope_at) {
-  double low = 0.0;
-  double high = 1.0;
-  double omega = 0.5;
-  for (int iteration = 0; iteration < 200; ++iteration) {
-    const Slope slope = slope_at(omega);
-    if (slope.value == 0.0) return omega;
-    (slope.value > 0.0 ? low : high) = omega;
-    double next = omega - slope.value / slope.derivative;
-    if (!(next > low && next < high)) next = 0.5 * (low + high);
-    const double step = std::fabs(next - omega);
-    omega = next;
-    if (step <= 1e-16 || high - low <= 1e-16) break;
-  }
-  return omega;
 }
 
 template <typename SlopeAt>

@@ -147,6 +147,13 @@ std::size_t MeasurementBook::add(const Belief& information) {
   return count_++;
 }
 
+Belief MeasurementBook::information(std::size_t k) const {
+  const std::size_t stride = triangle(dimension_) + static_cast<std::size_t>(dimension_);
+  Sums row{};
+  std::copy_n(information_.data() + k * stride, stride, row.begin());
+  return unpacked_belief(row, dimension_);
+}
+
 Belief MeasurementBook::weighted_sum(std::span<const double> weights) const {
   const std::size_t stride = triangle(dimension_) + static_cast<std::size_t>(dimension_);
   const Sums sums = accumulated(information_, std::min(count_, weights.size()), stride, stride,
@@ -174,6 +181,8 @@ Matrix MeasurementBook::weighted_square(std::span<const double> weights, double 
 Ledger& Ledger::operator=(const Ledger& other) {
   if (this != &other) {
     copy_with_room(other.weights_, weights_);
+    copy_with_room(other.matrices_, matrices_);
+    dimension_ = other.dimension_;
     copy_with_room(other.reach_, reach_);
   }
   return *this;
@@ -186,10 +195,16 @@ void Ledger::measured(std::size_t index) {
   }
   weights_[index] += 1.0;
   reach_[index] = 1;
+  if (dimension_ == 0) return;
+  const auto n = static_cast<std::size_t>(dimension_);
+  matrices_.resize(weights_.size() * n * n, 0.0);
+  for (std::size_t i = 0; i < n; ++i) matrices_[(index * n + i) * n + i] += 1.0;
 }
 
 void Ledger::combine(double a, double b, const Ledger& received, double c, const Ledger* common) {
   require(common != this, "Ledger::combine: a ledger cannot be its own common memory");
+  require(dimension_ == 0 && received.dimension_ == 0,
+          "Ledger::combine: a rule by direction and another cannot be mixed");
   const std::size_t common_size = common != nullptr && c != 0.0 ? common->weights_.size() : 0;
   const std::size_t size = std::max({weights_.size(), received.weights_.size(), common_size});
   weights_.resize(size, 0.0);
@@ -210,7 +225,9 @@ void Ledger::combine(double a, double b, const Ledger& received, double c, const
 
 void Ledger::clear() {
   weights_.clear();
+  matrices_.clear();
   reach_.clear();
+  dimension_ = 0;
 }
 
 Multiplicity multiplicity(const Ledger& ledger) {
@@ -246,9 +263,13 @@ std::optional<Matrix> true_covariance(const Matrix& omega, const Ledger& ledger,
     largest = std::max(largest, std::fabs(w));
   }
   // Weights grow like Ω (1e85 and beyond) and enter as squares: both are brought to about one.
+  // (Those by direction stay moderate: no belief grows that does not grow in any direction.)
   int exponent = 0;
   std::frexp(largest, &exponent);
-  const Matrix square = book.weighted_square(ledger.weights(), std::ldexp(1.0, -exponent));
+  if (!ledger.matrices().empty()) exponent = 0;
+  const Matrix square = ledger.matrices().empty()
+                            ? book.weighted_square(ledger.weights(), std::ldexp(1.0, -exponent))
+                            : book.weighted_square_of(ledger.matrices());
   const Matrix middle = both_sides(scaled.factor, square, exponent);
   const Matrix half = gaussian::solve(scaled, middle).transpose();
   Matrix p = gaussian::solve(scaled, half);

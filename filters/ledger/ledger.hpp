@@ -5,7 +5,9 @@
 // when information that was never there is taken away. Weights are combined with the coefficients
 // of the fusion rule itself. For static linear-Gaussian problems without prior
 //     Ω = Σ w_k M_kᵀS_k⁻¹M_k   and   P_true = Ω⁻¹ (Σ w_k² M_kᵀS_k⁻¹M_k) Ω⁻¹,
-// so the true covariance of the estimate is known without Monte Carlo.
+// so the true covariance of the estimate is known without Monte Carlo. Rules that weigh direction
+// by direction give each measurement a matrix W_k instead (n×n, ξ = Σ W_kM_kᵀS_k⁻¹z_k), and
+// P_true = Ω⁻¹ (Σ W_k M_kᵀS_k⁻¹M_k W_kᵀ) Ω⁻¹; its weight is then tr W_k/n.
 //
 // Beside the weights it carries, independently of them, the set of measurements that can have
 // travelled here at all (`reach`).
@@ -29,10 +31,16 @@ class MeasurementBook {
   std::size_t add(const gaussian::Belief& information);
   std::size_t size() const { return count_; }
   int dimension() const { return dimension_; }
+  /// The k-th, k < size().
+  gaussian::Belief information(std::size_t k) const;
   /// Σ over k of weights[k] · information k; weights beyond the end count as zero.
   gaussian::Belief weighted_sum(std::span<const double> weights) const;
   /// Σ over the k with chosen[k] ≠ 0: what a central filter over these measurements believes.
   gaussian::Belief sum_over(std::span<const std::uint8_t> chosen) const;
+  /// Σ W_k ξ_k, or of all Ω_k, with W_k n×n by columns: what a ledger with matrices says.
+  gaussian::Belief weighted_sum_of(std::span<const double> matrices) const;
+  /// Σ W_k M_kᵀS_k⁻¹M_k W_kᵀ (n×n).
+  gaussian::Matrix weighted_square_of(std::span<const double> matrices) const;
   /// Σ (scale·w_k)² M_kᵀS_k⁻¹M_k (n×n). A scale keeps the squares of huge weights finite.
   gaussian::Matrix weighted_square(std::span<const double> weights, double scale = 1.0) const;
 
@@ -59,15 +67,22 @@ class Ledger {
   /// nullptr (nothing in common yet) and is not looked at for c = 0. No allocation once this ledger
   /// has the capacity. @throws BrokenInvariant if `common` is this ledger itself.
   void combine(double a, double b, const Ledger& received, double c, const Ledger* common);
+  /// this = G_a·this + G_b·received, weight by weight (n×n); reach as above.
+  void combine(const gaussian::Matrix& own, const gaussian::Matrix& heard, const Ledger& received);
   void clear();
 
   std::span<const double> weights() const { return weights_; }
+  /// W_k by columns, n² numbers for each measurement; empty as long as W_k = w_k·I for all.
+  std::span<const double> matrices() const { return matrices_; }
   /// 1 where measurement k can have contributed to this belief, else 0.
   std::span<const std::uint8_t> reach() const { return reach_; }
 
  private:
+  void spread(int n);
   std::vector<double> weights_;
+  std::vector<double> matrices_;
   std::vector<std::uint8_t> reach_;
+  int dimension_ = 0;  // of the matrices; 0 without
 };
 
 /// Over the measurements with |w| > 1e-12.

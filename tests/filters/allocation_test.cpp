@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdlib>
 #include <new>
+#include <utility>
 
 #include "filters/gaussian/codec.hpp"
 #include "filters/gaussian/fusion.hpp"
@@ -60,10 +61,10 @@ TEST(Allocation, DoesNotHappenInFusionRules) {
     singular.omega.row(0).setZero();
     singular.omega.col(0).setZero();
     for (const RuleInfo& row : rules()) {
-      EXPECT_EQ(allocations_of([&] { coefficients(row.rule, a, b); }), 0u) << row.name << n;
-      EXPECT_EQ(allocations_of([&] { coefficients(row.rule, a, singular); }), 0u) << row.name << n;
-      EXPECT_EQ(allocations_of([&] { coefficients(row.rule, singular, singular); }), 0u)
-          << row.name << n;
+      for (const auto& [x, y] : {std::pair(&a, &b), {&a, &singular}, {&singular, &singular}}) {
+        EXPECT_EQ(allocations_of([&] { fused(row.rule, *x, *y, Belief::unknown(n)); }), 0u)
+            << row.name << n;
+      }
     }
     EXPECT_EQ(allocations_of([&] { intersect_det(a.omega, b.omega); }), 0u) << n;
     EXPECT_EQ(allocations_of([&] { intersect_trace(a.omega, b.omega); }), 0u) << n;

@@ -87,9 +87,10 @@ TEST(FusionRules, TheTableIsComplete) {
     }
     EXPECT_EQ(row.sends == Sends::nothing, row.rule == Rule::none);
   }
-  EXPECT_EQ(names, (std::set<std::string_view>{
-                       "none", "naive", "local-update", "channel", "channel-robust", "ci-det",
-                       "ci-trace", "ci-half", "ci-niehsen", "ci-franken-huepper", "most-certain"}));
+  EXPECT_EQ(names, (std::set<std::string_view>{"none", "naive", "local-update", "channel",
+                                               "channel-robust", "ci-det", "ci-trace", "ci-half",
+                                               "ci-niehsen", "ci-franken-huepper", "most-certain",
+                                               "inverse-ci", "ellipsoidal"}));
   EXPECT_EQ(info(Rule::channel).memory, Memory::last_exchanged);
   EXPECT_EQ(info(Rule::channel_robust).memory, Memory::last_heard);
   EXPECT_EQ(info(Rule::channel_robust).sends, Sends::belief_less_heard);
@@ -108,6 +109,14 @@ TEST(FusionRules, AnOverflownBeliefIsNeverFused) {
   undefined.omega(1, 1) = std::numeric_limits<double>::quiet_NaN();
   for (const RuleInfo& row : rules()) {
     if (row.rule == Rule::none) continue;
+    if (row.directional) {
+      for (const Belief& bad : {overflown, undefined}) {
+        EXPECT_STREQ(fuse_by_direction(row.rule, first, bad).skipped, "overflow") << row.name;
+        EXPECT_EQ(fuse_by_direction(row.rule, first, bad).belief.omega, first.omega);
+        EXPECT_STREQ(fuse_by_direction(row.rule, bad, first).skipped, "overflow") << row.name;
+      }
+      continue;
+    }
     for (const Belief& bad : {overflown, undefined}) {
       for (const Coefficients& c :
            {coefficients(row.rule, first, bad), coefficients(row.rule, bad, first)}) {
@@ -123,6 +132,12 @@ TEST(FusionRules, AnOverflownBeliefIsNeverFused) {
 TEST(FusionRules, BeliefsOfDifferentDimensionsAreRefused) {
   for (const RuleInfo& row : rules()) {
     EXPECT_THROW(coefficients(row.rule, first, Belief::unknown(3)), BrokenInvariant) << row.name;
+    EXPECT_THROW(fuse_by_direction(row.rule, first, Belief::unknown(3)), BrokenInvariant);
+    if (row.directional) {
+      EXPECT_THROW(coefficients(row.rule, first, second), BrokenInvariant) << row.name;
+    } else {
+      EXPECT_THROW(fuse_by_direction(row.rule, first, second), BrokenInvariant) << row.name;
+    }
   }
 }
 

@@ -92,6 +92,26 @@ inline Belief fused(const Coefficients& c, const Belief& own, const Belief& rece
   return sum;
 }
 
+/// The same for any rule.
+inline Belief fused(Rule rule, const Belief& own, const Belief& received, const Belief& common) {
+  if (info(rule).directional) return fuse_by_direction(rule, own, received).belief;
+  return fused(coefficients(rule, own, received), own, received, common);
+}
+
+/// What multiplies the two information vectors.
+struct Gains {
+  Eigen::MatrixXd own, received;
+};
+inline Gains gains(Rule rule, const Belief& own, const Belief& received) {
+  if (info(rule).directional) {
+    const DirectionalFusion fusion = fuse_by_direction(rule, own, received);
+    return {fusion.own, fusion.received};
+  }
+  const Coefficients c = coefficients(rule, own, received);
+  const Matrix identity = Matrix::Identity(own.dimension(), own.dimension());
+  return {c.own * identity, c.received * identity};
+}
+
 inline double relative(const Eigen::MatrixXd& value, const Eigen::MatrixXd& reference) {
   return (value - reference).norm() / reference.norm();
 }

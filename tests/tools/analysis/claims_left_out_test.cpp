@@ -112,10 +112,9 @@ TEST(WhatIsLeftOut, TimesThatNeverComeAreLaterThanAllOthers) {
   Expectation itself = expects("agree_again_s", Kind::greater_than);
   itself.than_agent = "central";
   EXPECT_EQ(bed.judge_slow(itself).worst.estimate, 0.0);
-  const auto rows = compare(bed.file(), {.metric = "agree_again_s",
-                                         .by = "rule",
-                                         .baseline = "quick",
-                                         .agents = "central"});
+  const auto rows =
+      compare(bed.file(),
+              {.metric = "agree_again_s", .by = "rule", .baseline = "quick", .agents = "central"});
   EXPECT_EQ(rows.at(0).verdict, "higher");
   EXPECT_EQ(rows.at(0).pairs, 10);
   EXPECT_EQ(rows.at(0).difference.estimate, 5.0);

@@ -4,7 +4,7 @@ closed forms.
 
     aloha.py DATABASE OUTPUT [--study S]
 
-For the study scenarios/radio/aloha. OUTPUT ends with .png, .svg or .pdf.
+For the study scenarios/radio/character-aloha. OUTPUT ends with .png, .svg or .pdf.
 """
 
 import argparse

@@ -4,7 +4,7 @@ Bianchi's model.
 
     carrier_sense.py DATABASE OUTPUT [--study S]
 
-For the study scenarios/radio/carrier-sense. OUTPUT ends with .png, .svg or .pdf.
+For the study scenarios/radio/character-carrier-sense. OUTPUT ends with .png, .svg or .pdf.
 """
 
 import argparse

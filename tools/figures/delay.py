@@ -4,7 +4,7 @@ forms.
 
     delay.py DATABASE OUTPUT [--study S]
 
-For the study scenarios/radio/delay. OUTPUT ends with .png, .svg or .pdf.
+For the study scenarios/radio/character-delay. OUTPUT ends with .png, .svg or .pdf.
 """
 
 import argparse

@@ -3,7 +3,7 @@
 
     distance.py DATABASE OUTPUT [--study S]
 
-For the study scenarios/radio/distance. OUTPUT ends with .png, .svg or .pdf.
+For the study scenarios/radio/character-distance. OUTPUT ends with .png, .svg or .pdf.
 """
 
 import argparse
@@ -17,7 +17,7 @@ import style
 
 FRAME_BYTES = 50
 SIGMA_DB = 4.0
-# model: (name for a reader, share heard at a distance) as in scenarios/radio/distance.study.toml
+# model: (name for a reader, share heard at a distance) as in scenarios/radio/character-distance.study.toml
 MODELS = {
     "disk": ("disk, 50 m", lambda d: radio_theory.disk(d, 50.0)),
     "grey-zone": ("grey zone, 25 to 75 m", lambda d: radio_theory.grey_zone(d, 25.0, 75.0)),

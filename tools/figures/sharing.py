@@ -4,7 +4,7 @@ and frames that pass through one another, with the closed forms.
 
     sharing.py DATABASE OUTPUT [--study S]
 
-For the study scenarios/radio/sharing. OUTPUT ends with .png, .svg or .pdf.
+For the study scenarios/radio/character-sharing. OUTPUT ends with .png, .svg or .pdf.
 """
 
 import argparse

@@ -203,7 +203,7 @@ class Claims(unittest.TestCase):
     def test_distance(self):
         tolerances = {"grey-zone": 0.01, "log-distance": 0.01, "shadowed": 0.05}
         checked = 0
-        for metric, where, low, high in self.bounds("distance.study.toml"):
+        for metric, where, low, high in self.bounds("character-distance.study.toml"):
             self.assertEqual(metric, "delivery_ratio")
             value = distance.MODELS[where["model"]][1](where["distance_m"])
             self.agree(low, high, value, tolerances[where["model"]])
@@ -212,7 +212,7 @@ class Claims(unittest.TestCase):
 
     def test_delay(self):
         checked = 0
-        for metric, where, low, high in self.bounds("delay.study.toml"):
+        for metric, where, low, high in self.bounds("character-delay.study.toml"):
             load = where["load"]
             wait, share = delay.wait_and_share(where["sizes"], where["queue"], load)
             if metric == "delivery_ratio":
@@ -229,7 +229,7 @@ class Claims(unittest.TestCase):
     def test_aloha(self):
         unit = radio_panels.PAYLOAD_S * radio_panels.RATE_BPS / radio_panels.FRAME_S
         values = []
-        for metric, where, low, high in self.bounds("aloha.study.toml"):
+        for metric, where, low, high in self.bounds("character-aloha.study.toml"):
             self.assertEqual(metric, "goodput_bps")
             value = theory.slotted_aloha(where["stations"], where["probability"]) * unit
             if (low + high) / 2.0 < 0.995 * value:  # the claim about 1/e
@@ -241,7 +241,7 @@ class Claims(unittest.TestCase):
 
     def test_carrier_sense(self):
         checked = 0
-        for metric, where, low, high in self.bounds("carrier-sense.study.toml"):
+        for metric, where, low, high in self.bounds("character-carrier-sense.study.toml"):
             n = where["stations"]
             if metric == "goodput_bps":
                 value = carrier_sense.share(n, where["window"]) * radio_panels.RATE_BPS
@@ -255,7 +255,7 @@ class Claims(unittest.TestCase):
     def test_sharing(self):
         unit = radio_panels.PAYLOAD_S * radio_panels.RATE_BPS / radio_panels.FRAME_S
         checked = 0
-        for metric, where, low, high in self.bounds("sharing.study.toml"):
+        for metric, where, low, high in self.bounds("character-sharing.study.toml"):
             self.assertEqual(metric, "goodput_bps")
             loads = where["load"] if isinstance(where["load"], list) else [where["load"]]
             for load in loads:
@@ -287,9 +287,9 @@ class Scenarios(unittest.TestCase):
         self.assertEqual(scenario["agents"][1]["count"], sharing.STATIONS)
 
     def test_a_slot_of_aloha_is_a_frame_and_a_load_of_sharing_is_frames_a_frame_time(self):
-        aloha_slot_s = toml("aloha.study.toml")["set"]["radio.sharing"]["slot_s"]
+        aloha_slot_s = toml("character-aloha.study.toml")["set"]["radio.sharing"]["slot_s"]
         self.assertAlmostEqual(aloha_slot_s, radio_panels.FRAME_S, places=12)
-        for point in toml("sharing.study.toml")["axes"]["load"]["points"]:
+        for point in toml("character-sharing.study.toml")["axes"]["load"]["points"]:
             period_s = point["set"]["agents[1].traffic.period_s"]
             load = sharing.STATIONS * radio_panels.FRAME_S / period_s
             self.assertAlmostEqual(load, point["label"], places=6)
@@ -298,14 +298,14 @@ class Scenarios(unittest.TestCase):
         scenario = toml("delay.toml")
         service_s = 8 * scenario["agents"][0]["traffic"]["bytes"] / scenario["radio"]["rate_bps"]
         self.assertAlmostEqual(1e3 * service_s, delay.SERVICE_MS, places=12)
-        for point in toml("delay.study.toml")["axes"]["load"]["points"]:
+        for point in toml("character-delay.study.toml")["axes"]["load"]["points"]:
             load = service_s / point["set"]["agents[0].traffic.period_s"]
             self.assertAlmostEqual(load, point["label"], places=6)
 
     def test_the_models_of_the_distance_study_are_those_of_the_script(self):
         traffic = toml("distance.toml")["agents"][0]["traffic"]
         self.assertEqual(traffic["bytes"], distance.FRAME_BYTES)
-        points = toml("distance.study.toml")["axes"]["model"]["points"]
+        points = toml("character-distance.study.toml")["axes"]["model"]["points"]
         models = {p["label"]: p["set"]["radio.propagation"] for p in points}
         self.assertEqual(list(models), list(distance.MODELS))
         self.assertEqual(models["disk"]["range_m"], 50.0)

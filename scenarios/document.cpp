@@ -106,7 +106,7 @@ bool is_bare_key(std::string_view key) {
 
 }  // namespace
 
-std::string Origin::text() const {
+std::string TextOrigin::text() const {
   if (!source) return "?";
   return line > 0 ? *source + ":" + std::to_string(line) : *source;
 }
@@ -142,7 +142,7 @@ TomlNode read_toml_file(const std::string& file) {
   }
 }
 
-std::optional<TomlNode> parse_toml_value(std::string_view text, const Origin& origin,
+std::optional<TomlNode> parse_toml_value(std::string_view text, const TextOrigin& origin,
                                          std::string& why) {
   try {
     const toml::table table = toml::parse("value = " + std::string(text));

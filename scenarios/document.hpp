@@ -13,7 +13,7 @@
 namespace hearsay {
 
 /// Where something was written: a line of a file, or an option ("--set a=1"; then line is 0).
-struct Origin {
+struct TextOrigin {
   std::shared_ptr<const std::string> source;
   int line = 0;
   /// "ring.toml:12", or the source alone.
@@ -23,8 +23,8 @@ struct Origin {
 struct TomlNode {
   enum class Type { boolean, integer, number, string, date, array, table };
   Type type = Type::table;
-  Origin origin;    ///< of the key; for an element of an array, of the element
-  std::string key;  ///< name in the parent table; empty in an array
+  TextOrigin origin;  ///< of the key; for an element of an array, of the element
+  std::string key;    ///< name in the parent table; empty in an array
   bool boolean = false;
   std::int64_t integer = 0;
   double number = 0.0;
@@ -43,7 +43,7 @@ struct TomlNode {
 TomlNode read_toml_file(const std::string& file);
 
 /// One TOML value ("0.1", "[1, 2]"). Nothing if `text` is not one, with the reason in `why`.
-std::optional<TomlNode> parse_toml_value(std::string_view text, const Origin& origin,
+std::optional<TomlNode> parse_toml_value(std::string_view text, const TextOrigin& origin,
                                          std::string& why);
 
 /// The value as TOML on one line, such that reading it gives the same value.

@@ -83,7 +83,7 @@ void reject(const TomlNode& node, const KeyPath& path, const std::string& why) {
                    ": " + why);
 }
 
-void reject_key(const Origin& origin, const std::string& path, const std::string& why) {
+void reject_key(const TextOrigin& origin, const std::string& path, const std::string& why) {
   throw InputError(origin.text() + ": " + path + ": " + why);
 }
 

@@ -31,7 +31,8 @@ struct KeyPath {
 /// @throws InputError "ring.toml:12: radio.rate_bps = -1: must be …".
 [[noreturn]] void reject(const TomlNode& node, const KeyPath& path, const std::string& why);
 /// @throws InputError "ring.toml:12: radio.edges: …", without the value.
-[[noreturn]] void reject_key(const Origin& origin, const std::string& path, const std::string& why);
+[[noreturn]] void reject_key(const TextOrigin& origin, const std::string& path,
+                             const std::string& why);
 /// @throws InputError "…: expected a number, found a string".
 [[noreturn]] void reject_type(const TomlNode& node, const KeyPath& path, const char* expected);
 

@@ -11,10 +11,11 @@
 //   naive               own               1, 1, 0                 nothing
 //   local-update        own measurements  1, 1, 0                 nothing
 //                       since it last sent
-//   channel             own               1, 1, 1                 common: last belief sent or heard
-//   channel-robust      own − heard       1, 1, 1                 common: last message heard from
-//   it ci-det              own               ω, 1−ω, 0 by max |Ω|    nothing ci-trace own ω, 1−ω, 0
-//   by min tr Σ   nothing ci-half             own               ½, ½, 0                 nothing
+//   channel             own               1, 1, 1                 what was last exchanged
+//   channel-robust      own − heard       1, 1, 1                 what was last heard from it
+//   ci-det              own               ω, 1−ω, 0 by max |Ω|    nothing
+//   ci-trace            own               ω, 1−ω, 0 by min tr Σ   nothing
+//   ci-half             own               ½, ½, 0                 nothing
 //   ci-niehsen          own               ω ∝ 1/tr Σ              nothing
 //   ci-franken-huepper  own               ω from determinants     nothing
 //   most-certain        own               1, 0, 0 or 0, 1, 0      nothing

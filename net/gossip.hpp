@@ -56,6 +56,9 @@ class Gossip final : public Receiver {
 
   void on_packet(const Packet& packet) override;
   void on_outcome(const Packet& packet, bool acknowledged) override;
+  void on_queue_empty() override {
+    if (up_) up_->on_queue_empty();
+  }
 
  private:
   void await(Time time);

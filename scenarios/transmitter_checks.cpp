@@ -86,23 +86,38 @@ double answer_s(const RadioSpec& radio) {
          8.0 * radio.acknowledgement.bytes / radio.rate_bps;
 }
 
+bool is_acknowledged(const AgentSpec& agent) {
+  return agent.talk.service == "acknowledged" ||
+         (agent.traffic && agent.traffic->service == "acknowledged");
+}
+
+// Who senses the air must wait longer than an acknowledgement takes to begin.
+void check_interframe(const ScenarioUnderCheck& file, const KeyPath& path) {
+  const RadioSpec& radio = file.scenario.radio;
+  const double answer_begins_s = radio.acknowledgement.interframe_s + radio.latency_s;
+  if (radio.sharing.interframe_s > answer_begins_s) return;
+  refuse(file, path["interframe_s"],
+         "with acknowledged packets must be above acknowledgement.interframe_s + latency_s (" +
+             to_toml(answer_begins_s) + "), or others begin before the acknowledgement");
+}
+
 void check_slots(const ScenarioUnderCheck& file, const KeyPath& path) {
   const RadioSpec& radio = file.scenario.radio;
   const SharingSpec& sharing = radio.sharing;
   if (sharing.slot_s <= 0.0) {
     file.fail(path["slot_s"], "model = \"" + sharing.model + "\" needs a slot above 0 s");
   }
-  if (sharing.model == "carrier-sense") return;
+  const bool acknowledged =
+      std::any_of(file.scenario.agents.begin(), file.scenario.agents.end(), is_acknowledged);
+  if (sharing.model == "carrier-sense") {
+    if (acknowledged) check_interframe(file, path);
+    return;
+  }
   if (!radio.mtu_bytes) {
     file.fail(path["model"], "\"" + sharing.model +
                                  "\" needs radio.mtu_bytes, which says how long a frame can be");
   }
   double frame_s = 8.0 * (*radio.mtu_bytes + radio.header_bytes) / radio.rate_bps;
-  const bool acknowledged = std::any_of(
-      file.scenario.agents.begin(), file.scenario.agents.end(), [](const AgentSpec& agent) {
-        return agent.talk.service == "acknowledged" ||
-               (agent.traffic && agent.traffic->service == "acknowledged");
-      });
   if (acknowledged) frame_s += answer_s(radio);
   if (Duration::seconds(sharing.slot_s) >= Duration::seconds(std::min(frame_s, 9e9))) return;
   refuse(file, path["slot_s"],

@@ -42,6 +42,20 @@ TEST_F(TransmitterChecks, AQueueHoldsAPacket) {
             "s.toml:3: radio.queue_packets_max = 0: must be between 1 and 1000000");
 }
 
+TEST_F(TransmitterChecks, WhoSensesTheAirWaitsForAcknowledgements) {
+  const auto sensing = [](const std::string& space) {
+    return "latency_s = 0.001\nacknowledgement = { interframe_s = 0.002 }\n"
+           "sharing = { model = \"carrier-sense\", slot_s = 1e-5, interframe_s = " +
+           space + " }";
+  };
+  EXPECT_EQ(error(sensing("0.003"), acknowledged),
+            "s.toml:5: radio.sharing.interframe_s = 0.003: with acknowledged packets must be above "
+            "acknowledgement.interframe_s + latency_s (0.003), or others begin before the "
+            "acknowledgement");
+  EXPECT_EQ(error(sensing("0.00301"), acknowledged), "no error");
+  EXPECT_EQ(error(sensing("0.0")), "no error");
+}
+
 TEST_F(TransmitterChecks, ASlotHoldsAFrame) {
   const std::string frame = "rate_bps = 1e6\nheader_bytes = 25\nmtu_bytes = 100\n";  // 1 ms
   for (const std::string model : {"slotted-aloha", "tdma"}) {

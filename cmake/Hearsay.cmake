@@ -38,13 +38,17 @@ function(hearsay_library name)
 endfunction()
 
 # hearsay_test(kernel SOURCES a_test.cpp LIBRARIES hearsay_kernel [LABELS fast])
-# One executable a room; its tests are found by ctest one by one.
+# One executable a room; its tests are found by ctest one by one. NEEDS_SOURCE: those of the sources that read
+# files below HEARSAY_SOURCE_DIR. (All others compile to the same object in every clone.)
 function(hearsay_test name)
-  cmake_parse_arguments(arg "" "" "SOURCES;LIBRARIES;LABELS" ${ARGN})
+  cmake_parse_arguments(arg "" "" "SOURCES;LIBRARIES;LABELS;NEEDS_SOURCE" ${ARGN})
   set(target ${name}_test)
   add_executable(${target} ${arg_SOURCES})
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR})
-  target_compile_definitions(${target} PRIVATE HEARSAY_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  if(arg_NEEDS_SOURCE)
+    set_source_files_properties(${arg_NEEDS_SOURCE} PROPERTIES
+      COMPILE_DEFINITIONS HEARSAY_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  endif()
   target_link_libraries(${target} PRIVATE hearsay_private_rules ${arg_LIBRARIES} GTest::gtest_main
     GTest::gmock)
   gtest_discover_tests(${target} PROPERTIES LABELS "${arg_LABELS}" DISCOVERY_TIMEOUT 60

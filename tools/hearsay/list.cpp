@@ -18,10 +18,26 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+const char* text_of(gaussian::Sends sends) {
+  using gaussian::Sends;
+  switch (sends) {
+    case Sends::nothing:
+      return "nothing";
+    case Sends::belief:
+      return "its whole belief, one broadcast";
+    case Sends::local_update:
+      return "what it measured since it last sent, one broadcast";
+    case Sends::belief_less_heard:
+      return "to each neighbour its belief less what that one said last";
+  }
+  return "";
+}
+
 Json rules() {
   Json out = Json::array();
   for (const gaussian::RuleInfo& rule : gaussian::rules()) {
     out.push_back({{"name", rule.name},
+                   {"sends", text_of(rule.sends)},
                    {"assumes", rule.assumes},
                    {"conservative", rule.conservative},
                    {"ledger", rule.ledger},

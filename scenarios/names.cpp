@@ -49,7 +49,7 @@ std::string join(std::span<const std::string> names) {
 std::string allowed_names(std::string_view name, std::span<const std::string> known) {
   const auto near = nearest_name(name, known);
   std::string text;
-  if (!near || known.size() <= 12) text += "; allowed: " + join(known);
+  if (!near || known.size() <= 16) text += "; allowed: " + join(known);
   if (near) text += "; did you mean '" + *near + "'?";
   return text;
 }

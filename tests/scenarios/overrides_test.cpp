@@ -69,7 +69,8 @@ TEST_F(Overrides, ErrorsNameTheOptionInPlaceOfALine) {
   EXPECT_EQ(
       error({"agents.estimator.fusion=ci-dett"}),
       "--set agents.estimator.fusion=ci-dett: agents[0].estimator.fusion = \"ci-dett\": "
-      "unknown; allowed: none, naive, local-update, channel, channel-robust, ci-det, ci-trace; "
+      "unknown; allowed: none, naive, local-update, channel, channel-robust, ci-det, ci-trace, "
+      "ci-half, ci-niehsen, ci-franken-huepper, most-certain, inverse-ci, ellipsoidal; "
       "did you mean 'ci-det'?");
   EXPECT_EQ(error({"radio.topology=disk"}),
             "--set radio.topology=disk: radio.topology: \"disk\" needs radio.range_m above 0");

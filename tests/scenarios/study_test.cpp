@@ -202,7 +202,8 @@ TEST_F(StudyLoader, AValueThatCannotBeIsFoundAtItsAxis) {
   EXPECT_EQ(error("[axes]\nx = { key = \"agents.estimator.fusion\", values = [\n\"naive\",\n"
                   "\"nave\"] }\n"),
             "s.study.toml:5: agents[0].estimator.fusion = \"nave\": unknown; allowed: none, naive, "
-            "local-update, channel, channel-robust, ci-det, ci-trace; did you mean 'naive'?");
+            "local-update, channel, channel-robust, ci-det, ci-trace, ci-half, ci-niehsen, "
+            "ci-franken-huepper, most-certain, inverse-ci, ellipsoidal; did you mean 'naive'?");
 }
 
 TEST_F(StudyLoader, ACombinationThatCannotBeNamesTheCell) {

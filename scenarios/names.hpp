@@ -21,7 +21,7 @@ std::optional<std::string> nearest_name(std::string_view name, std::span<const s
 std::string join(std::span<const std::string> names);
 
 /// What follows an unknown name in a message: "; allowed: a, b, c; did you mean 'b'?". The list is
-/// left out where a near name is found in a list of more than twelve.
+/// left out where a near name is found in a list of more than sixteen.
 std::string allowed_names(std::string_view name, std::span<const std::string> known);
 
 /// As allowed_names(), but the list only where no name is near.

@@ -75,7 +75,6 @@ class Trajectory {
   void intersect(double omega, const Trajectory& other);
 
  private:
-  friend class TrajectoryFactor;
   std::size_t stride() const { return static_cast<std::size_t>(n_ * (2 * n_ + 1)); }
   double* at(int k) { return numbers_.data() + static_cast<std::size_t>(k) * stride(); }
   const double* at(int k) const { return numbers_.data() + static_cast<std::size_t>(k) * stride(); }

@@ -26,13 +26,11 @@ class Fleet {
     int agents = 1;
     int steps_max = 20;
     TrajectoryExchange exchange = TrajectoryExchange::all_but_yours;
-    double loss = 0.0;
     int latency_max = 0;  ///< stamps
   };
   explicit Fleet(Options options)
       : options_(std::move(options)), random_(stream("fleet")), central_(estimator(1000, 0)) {
     for (int a = 0; a < options_.agents; ++a) agents_.push_back(estimator(options_.steps_max, 0));
-    folded_early_ = false;
     reached_.resize(agents_.size());
   }
 
@@ -124,7 +122,7 @@ class Fleet {
   std::vector<Measured> reached_;
   std::vector<Sent> air_;
   int made_ = 0;
-  bool folded_early_;
+  bool folded_early_ = false;
 };
 
 const std::vector<std::pair<int, int>> tree = {{0, 1}, {1, 2}, {1, 3}, {3, 4}, {3, 5}};

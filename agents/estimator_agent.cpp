@@ -2,21 +2,55 @@
 
 #include <utility>
 
+#include "agents/estimators/shared_trajectories.hpp"
+#include "agents/estimators/static_gaussian.hpp"
+#include "agents/estimators/whole_trajectories.hpp"
+
 namespace hearsay {
 
 EstimatorAgent::EstimatorAgent(Context& context, Witness& witness, Options options)
     : Agent(context),
       witness_(witness),
       options_(std::move(options)),
-      estimator_({.rule = options_.rule,
-                  .subjects = options_.subjects,
-                  .dimension = options_.dimension,
-                  .ledgers = witness.ledgers(),
-                  .workspace = &witness.workspace(),
-                  .strangers = context.hears_strangers()},
-                 context.neighbours()),
+      estimator_(make_estimator(context, witness, options_)),
       message_kind_(context.simulation().record().name("gaussian")) {
-  witness_.watch(context.id(), estimator_);
+  witness_.watch(context.id(), *estimator_);
+}
+
+std::unique_ptr<Estimator> EstimatorAgent::make_estimator(Context& context, Witness& witness,
+                                                          const Options& options) {
+  if (!options.window) {
+    return std::make_unique<StaticGaussianEstimator>(
+        StaticGaussianEstimator::Options{.rule = options.rule,
+                                         .subjects = options.subjects,
+                                         .dimension = options.dimension,
+                                         .motion = options.motion,
+                                         .ledgers = witness.ledgers(),
+                                         .workspace = &witness.workspace(),
+                                         .strangers = context.hears_strangers()},
+        context.neighbours());
+  }
+  if (const auto exchange = exchange_of(options.rule)) {
+    return std::make_unique<SharedTrajectories>(
+        SharedTrajectories::Options{.exchange = *exchange,
+                                    .subjects = options.subjects,
+                                    .motion = options.motion.value(),
+                                    .steps_max = *options.window,
+                                    .ledgers = witness.ledgers(),
+                                    .workspace = &witness.workspace()});
+  }
+  return std::make_unique<WholeTrajectories>(
+      WholeTrajectories::Options{.rule = options.rule,
+                                 .subjects = options.subjects,
+                                 .motion = options.motion.value(),
+                                 .steps_max = *options.window,
+                                 .ledgers = witness.ledgers(),
+                                 .workspace = &witness.workspace()},
+      context.neighbours());
+}
+
+void EstimatorAgent::advance() {
+  if (options_.motion) estimator_->advance(options_.motion->stamp_at(context().now()));
 }
 
 void EstimatorAgent::start() {
@@ -27,11 +61,15 @@ void EstimatorAgent::start() {
 }
 
 void EstimatorAgent::on_packet(const Packet& packet) {
-  if (packet.kind == message_kind_) estimator_.heard(packet.sender, packet.bytes, packet.rider);
+  if (packet.kind != message_kind_) return;
+  advance();
+  estimator_->heard(packet.sender, packet.bytes, packet.rider);
 }
 
 void EstimatorAgent::on_up(bool forgets) {
-  if (forgets) estimator_.forget();
+  if (!forgets) return;
+  advance();
+  estimator_->forget();
 }
 
 Process EstimatorAgent::look() {
@@ -42,18 +80,33 @@ Process EstimatorAgent::look() {
       Stream draws = context().simulation().stream_at(
           Purpose("sensor noise"), Entity::sensor(context().id(), static_cast<std::uint32_t>(s)),
           count);
-      const gaussian::Belief information = look_at(options_.sensors[s], draws);
-      const int subject = static_cast<int>(s);
-      estimator_.measured(subject, information, witness_.measured(subject, information));
+      const auto subject = static_cast<int>(s);
+      const auto information = look_at(subject, draws);
+      if (information) measured(subject, *information);
     }
     next = next + options_.sensor_period;
   }
 }
 
-gaussian::Belief EstimatorAgent::look_at(const PositionSensor& sensor, Stream& draws) {
-  if (!options_.moves || !sensor.has_direction()) return sensor.measure(draws);
-  const Point place_m = context().position();
-  return sensor.moved_to({place_m[0], place_m[1]}).measure(draws);
+std::optional<gaussian::Belief> EstimatorAgent::look_at(int subject, Stream& draws) {
+  PositionSensor& sensor = options_.sensors[static_cast<std::size_t>(subject)];
+  if (options_.moves && (sensor.has_direction() || options_.range_max_m)) {
+    const Point place_m = context().position();
+    sensor.move_to({place_m[0], place_m[1]});
+  }
+  if (options_.motion) {
+    const auto truth = options_.targets[static_cast<std::size_t>(subject)].truth_at(
+        options_.motion->stamp_at(context().now()), options_.dimension);
+    sensor.look_towards({truth[0], truth[1]});
+  }
+  if (options_.range_max_m && sensor.distance_m() > *options_.range_max_m) return std::nullopt;
+  return sensor.measure(draws);
+}
+
+void EstimatorAgent::measured(int subject, const gaussian::Belief& information) {
+  advance();
+  const gaussian::Belief whole = gaussian::lifted(information, options_.dimension);
+  estimator_->measured(subject, whole, witness_.measured(subject, whole));
 }
 
 Process EstimatorAgent::replay() {
@@ -62,8 +115,7 @@ Process EstimatorAgent::replay() {
       co_await context().sleep_until(observation.time, Phase::measure);
     }
     if (!context().up()) continue;
-    estimator_.measured(observation.subject, observation.information,
-                        witness_.measured(observation.subject, observation.information));
+    measured(observation.subject, observation.information);
   }
 }
 
@@ -77,6 +129,7 @@ Process EstimatorAgent::talk() {
 
 void EstimatorAgent::say(std::uint64_t tick) {
   if (!context().up()) return;
+  advance();
   if (gaussian::info(options_.rule).sends != gaussian::Sends::belief_less_heard) {
     return say_to(no_agent, tick);
   }
@@ -86,7 +139,7 @@ void EstimatorAgent::say(std::uint64_t tick) {
 }
 
 void EstimatorAgent::say_to(AgentId receiver, std::uint64_t tick) {
-  const StaticGaussianEstimator::Speech speech = estimator_.speech(receiver);
+  const Estimator::Speech speech = estimator_->speech(receiver);
   if (speech.bytes.empty()) return;
   Outgoing packet;
   packet.kind = message_kind_;
@@ -95,9 +148,11 @@ void EstimatorAgent::say_to(AgentId receiver, std::uint64_t tick) {
   packet.tick = tick;
   packet.rider = speech.rider;
   // A belief is news of the one before. An update is not: it has what the one before has not.
-  const bool update = gaussian::info(options_.rule).sends == gaussian::Sends::local_update;
+  // (Of trajectories everything in the window is told again.)
+  const bool update =
+      gaussian::info(options_.rule).sends == gaussian::Sends::local_update && !options_.window;
   packet.subject = update ? tick : static_cast<std::uint64_t>(context().id());
-  if (context().send(packet)) estimator_.sent(receiver);
+  if (context().send(packet)) estimator_->sent(receiver);
 }
 
 }  // namespace hearsay

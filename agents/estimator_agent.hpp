@@ -7,10 +7,11 @@
 #include <vector>
 
 #include "agents/agent.hpp"
-#include "agents/estimators/static_gaussian.hpp"
+#include "agents/estimator.hpp"
 #include "agents/sensors/position.hpp"
 #include "agents/talk/periodic.hpp"
 #include "agents/witness.hpp"
+#include "filters/gaussian/fusion.hpp"
 
 namespace hearsay {
 
@@ -27,9 +28,15 @@ class EstimatorAgent final : public Agent {
     gaussian::Rule rule = gaussian::Rule::none;
     int subjects = 1;
     int dimension = 2;
+    std::optional<MotionModel> motion;  ///< of the subjects; nothing: they stand still
+    /// T in stamps: it believes in trajectories; nothing: in states as they are now.
+    std::optional<int> window;
     /// One a subject: each looks at every `sensor_period` from `sensor_start` to `sensor_end`.
     std::vector<PositionSensor> sensors;
-    bool moves = false;  ///< sensors go with the agent
+    bool moves = false;                 ///< sensors go with the agent
+    std::optional<double> range_max_m;  ///< what is farther away is not seen; > 0
+    /// With a motion: where the subjects are, for the sensors. They outlive the agent.
+    std::span<const Subject> targets;
     Duration sensor_period = Duration::nanoseconds(1'000'000'000);
     Time sensor_start;
     Time sensor_end = Time::never();
@@ -43,11 +50,17 @@ class EstimatorAgent final : public Agent {
   void on_packet(const Packet& packet) override;
   void on_up(bool forgets) override;
 
-  const StaticGaussianEstimator& estimator() const { return estimator_; }
+  const Estimator& estimator() const { return *estimator_; }
 
  private:
+  static std::unique_ptr<Estimator> make_estimator(Context& context, Witness& witness,
+                                                   const Options& options);
   Process look();
-  gaussian::Belief look_at(const PositionSensor& sensor, Stream& draws);
+  /// Nothing if the subject is too far away.
+  std::optional<gaussian::Belief> look_at(int subject, Stream& draws);
+  void measured(int subject, const gaussian::Belief& information);
+  /// Brings the estimator to the present.
+  void advance();
   Process replay();
   Process talk();
   void say(std::uint64_t tick);
@@ -55,7 +68,7 @@ class EstimatorAgent final : public Agent {
 
   Witness& witness_;
   Options options_;
-  StaticGaussianEstimator estimator_;
+  std::unique_ptr<Estimator> estimator_;
   NameId message_kind_;
   std::vector<AgentId> listeners_;  // of the talk that is being held
 };

@@ -11,7 +11,8 @@ constexpr auto kMean = Aggregate::mean;
 constexpr auto kRms = Aggregate::rms;
 
 constexpr std::array kMetrics = {
-    MetricInfo{"rms_error_m", kSeries, kRms, false, "√(eᵀe/n): error of the estimate an axis, m"},
+    MetricInfo{"rms_error_m", kSeries, kRms, false,
+               "√(eᵀe/n): error of the estimated position an axis, m"},
     MetricInfo{"claimed_sigma_m", kSeries, kRms, false,
                "√(tr Σ/n): standard deviation an axis the belief claims, m"},
     MetricInfo{"true_sigma_m", kSeries, kRms, true,
@@ -40,6 +41,14 @@ constexpr std::array kMetrics = {
         "largest distance an axis from this estimate to that of any other agent, m; of agent "
         "−1: between any two; missing if the agent is down, has no estimate or nobody else "
         "has one"},
+    MetricInfo{"velocity_error_m_per_s", kSeries, kRms, false,
+               "of a moving state: error of the velocity an axis, m/s"},
+    MetricInfo{"claimed_velocity_sigma_m_per_s", kSeries, kRms, false,
+               "of a moving state: standard deviation of the velocity an axis it claims, m/s"},
+    MetricInfo{"x_m", kSeries, kMean, false, "estimated position along x, m"},
+    MetricInfo{"y_m", kSeries, kMean, false, "estimated position along y, m"},
+    MetricInfo{"x_error_m", kSeries, kRms, false, "x_m less the truth, m"},
+    MetricInfo{"y_error_m", kSeries, kRms, false, "y_m less the truth, m"},
     MetricInfo{"anees", MetricTable::derived, kMean, false,
                "mean of nees over repetitions, divided by n"},
     MetricInfo{"distance_error_m", kScalar, kMean, false,
@@ -54,6 +63,8 @@ constexpr std::array kMetrics = {
     MetricInfo{"fusions", kScalar, kMean, false, "beliefs fused"},
     MetricInfo{"fusions_skipped", kScalar, kMean, false,
                "beliefs heard that the rule could not use"},
+    MetricInfo{"news_late", kScalar, kMean, false,
+               "of trajectories: measurements and entries of messages about a stamp that was gone"},
     MetricInfo{"messages_refused", kScalar, kMean, false,
                "messages malformed, or older than known"},
     MetricInfo{"measurements", kScalar, kMean, false, "measurements made"},
@@ -127,7 +138,7 @@ constexpr std::array kMetrics = {
                "log lines skipped: range not positive"},
     MetricInfo{"state_dimension", kScalar, kMean, false, "n, of agent −1"},
 };
-static_assert(kMetrics[static_cast<std::size_t>(Metric::disagreement_m)].name == "disagreement_m");
+static_assert(kMetrics[series_metric_count - 1].name == "y_error_m");
 
 }  // namespace
 

@@ -44,7 +44,13 @@ enum class Metric {
   reach_gap,
   not_positive,
   disagreement_m,
+  velocity_error_m_per_s,
+  claimed_velocity_sigma_m_per_s,
+  x_m,
+  y_m,
+  x_error_m,
+  y_error_m,
 };
-inline constexpr int series_metric_count = 14;
+inline constexpr int series_metric_count = 20;
 
 }  // namespace hearsay

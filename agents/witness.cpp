@@ -20,38 +20,62 @@ bool is_ledger(Metric metric) { return metrics()[static_cast<std::size_t>(metric
 
 }  // namespace
 
+std::span<const double> Subject::truth_at(std::int64_t stamp, int n) const {
+  const auto size = static_cast<std::size_t>(n);
+  const std::size_t last = truth.size() / size - 1;
+  const std::size_t k = std::min(static_cast<std::size_t>(stamp), last);
+  return std::span(truth).subspan(k * size, size);
+}
+
 Witness::Witness(Simulation& simulation, Options options)
     : simulation_(simulation), options_(std::move(options)) {
   require(!options_.subjects.empty(), "a witness needs a subject");
-  dimension_ = static_cast<int>(options_.subjects.front().truth.size());
+  dimension_ = options_.motion ? static_cast<int>(options_.motion->step.A.rows())
+                               : static_cast<int>(options_.subjects.front().truth.size());
+  axes_ = options_.motion ? dimension_ / 2 : dimension_;
   Record& record = simulation_.record();
   for (std::size_t m = 0; m < series_metric_count; ++m) {
     metric_names_[m] = record.name(metrics()[m].name);
   }
   for (const Metric metric : options_.series) wanted_[static_cast<std::size_t>(metric)] = true;
   if (options_.agreement) agreement_.emplace(*options_.agreement);
+  workspace_.measured_at.resize(options_.subjects.size());
   for (const Subject& subject : options_.subjects) {
-    require(static_cast<int>(subject.truth.size()) == dimension_,
+    const auto numbers = static_cast<int>(subject.truth.size());
+    require(options_.motion ? numbers > 0 && numbers % dimension_ == 0 : numbers == dimension_,
             "subjects of one run differ in dimension");
     subject_names_.push_back(record.name(subject.name));
     books_.emplace_back(dimension_);
+    books_.back().set_motion(subject.motion_noise);
     central_.push_back({gaussian::Belief::unknown(dimension_), Ledger{}});
-    spreads_.emplace_back(dimension_);
+    spreads_.emplace_back(axes_);
   }
 }
 
 std::size_t Witness::measured(int subject, const gaussian::Belief& information) {
+  advance();
   const auto s = static_cast<std::size_t>(subject);
   central_[s].belief += information;
   ++measurements_;
   if (!options_.ledger) return 0;
+  if (options_.motion) workspace_.measured_at[s].push_back(stamp_);
   const std::size_t index = books_[s].add(information);
   central_[s].ledger.measured(index);
   return index;
 }
 
-void Witness::watch(AgentId agent, const StaticGaussianEstimator& estimator) {
+void Witness::watch(AgentId agent, Estimator& estimator) {
   watched_.push_back({.agent = agent, .estimator = &estimator});
+}
+
+void Witness::advance() {
+  if (!options_.motion) return;
+  const std::int64_t now = options_.motion->stamp_at(simulation_.now());
+  for (; stamp_ < now; ++stamp_) {
+    for (TrackedBelief& central : central_) {
+      central.belief = gaussian::predict(central.belief, options_.motion->step);
+    }
+  }
 }
 
 void Witness::start() {
@@ -76,11 +100,15 @@ void Witness::schedule_agreement(Time at) {
 }
 
 void Witness::gather_spreads() {
+  advance();
+  for (const Watched& watched : watched_) watched.estimator->advance(stamp_);
   for (std::size_t s = 0; s < spreads_.size(); ++s) {
     spreads_[s].clear();
     for (const Watched& watched : watched_) {
       if (!up(watched.agent)) continue;
-      spreads_[s].add(gaussian::state(watched.estimator->tracked(static_cast<int>(s)).belief));
+      auto estimate = gaussian::state(watched.estimator->tracked(static_cast<int>(s)).belief);
+      if (estimate) estimate->conservativeResize(axes_);
+      spreads_[s].add(estimate);
     }
   }
 }
@@ -96,11 +124,14 @@ void Witness::sample_agreement() {
 double Witness::disagreement(const Watched& watched, const gaussian::Assessment& assessment,
                              int subject) const {
   if (!assessment.state || !assessment.state->allFinite() || !up(watched.agent)) return kNone;
-  return spreads_[static_cast<std::size_t>(subject)].farthest(*assessment.state).value_or(kNone);
+  return spreads_[static_cast<std::size_t>(subject)]
+      .farthest(assessment.state->head(axes_))
+      .value_or(kNone);
 }
 
 void Witness::sample() {
   last_sample_ = simulation_.now();
+  advance();
   if (wants(Metric::disagreement_m)) gather_spreads();
   const int subjects = static_cast<int>(options_.subjects.size());
   for (int s = 0; s < subjects; ++s) {
@@ -113,6 +144,7 @@ void Witness::sample() {
     keep(central_agent, s, values);
   }
   for (Watched& watched : watched_) {
+    watched.estimator->advance(stamp_);
     for (int s = 0; s < subjects; ++s) sample(watched, s);
   }
 }
@@ -157,10 +189,18 @@ Witness::Values Witness::measure(const TrackedBelief& tracked,
   const gaussian::Belief& belief = tracked.belief;
   const gaussian::Vector x = truth(subject);
   if (const auto& estimate = assessment.state) {
-    at(values, Metric::rms_error_m) = (*estimate - x).norm() / std::sqrt(double(dimension_));
-    at(values, Metric::nees) = gaussian::nees_of_error(belief, *estimate - x).value_or(kNone);
+    const gaussian::Vector error = *estimate - x;
+    at(values, Metric::rms_error_m) = error.head(axes_).norm() / std::sqrt(double(axes_));
+    at(values, Metric::nees) = gaussian::nees_of_error(belief, error).value_or(kNone);
+    at(values, Metric::x_m) = (*estimate)(0);
+    at(values, Metric::x_error_m) = error(0);
+    if (axes_ > 1) {
+      at(values, Metric::y_m) = (*estimate)(1);
+      at(values, Metric::y_error_m) = error(1);
+    }
+    if (options_.motion) measure_velocity(belief, error, values);
   }
-  at(values, Metric::claimed_sigma_m) = assessment.claimed_sigma.value_or(kNone);
+  at(values, Metric::claimed_sigma_m) = claimed_sigma(belief, assessment);
   if (wants(Metric::entropy_nats)) {
     at(values, Metric::entropy_nats) = gaussian::entropy_nats(belief).value_or(kNone);
   }
@@ -176,6 +216,29 @@ Witness::Values Witness::measure(const TrackedBelief& tracked,
   return values;
 }
 
+void Witness::measure_velocity(const gaussian::Belief& belief, const gaussian::Vector& error,
+                               Values& values) const {
+  const double root = std::sqrt(double(axes_));
+  at(values, Metric::velocity_error_m_per_s) = error.tail(axes_).norm() / root;
+  const auto P = gaussian::covariance(belief);
+  if (!P) return;
+  at(values, Metric::claimed_velocity_sigma_m_per_s) =
+      std::sqrt(P->diagonal().tail(axes_).sum()) / root;
+}
+
+double Witness::claimed_sigma(const gaussian::Belief& belief,
+                              const gaussian::Assessment& assessment) const {
+  if (axes_ == dimension_) return assessment.claimed_sigma.value_or(kNone);
+  const auto P = gaussian::covariance(belief);
+  return P ? position_sigma(*P) : kNone;
+}
+
+double Witness::position_sigma(const gaussian::Matrix& P) const {
+  double sum = 0.0;
+  for (int i = 0; i < axes_; ++i) sum += P(i, i);
+  return std::sqrt(sum / axes_);
+}
+
 void Witness::measure_ledger(const TrackedBelief& tracked, const gaussian::Assessment& assessment,
                              int subject, Values& values) const {
   const MeasurementBook& book = books_[static_cast<std::size_t>(subject)];
@@ -184,22 +247,23 @@ void Witness::measure_ledger(const TrackedBelief& tracked, const gaussian::Asses
   at(values, Metric::multiplicity_mean) = counted.mean;
   at(values, Metric::multiplicity_max) = counted.max;
   at(values, Metric::multiplicity_share) = counted.share_above_one;
-  at(values, Metric::reach_gap) = reach_gap(belief, tracked.ledger, book);
+  if (!options_.motion) at(values, Metric::reach_gap) = reach_gap(belief, tracked.ledger, book);
+  if (options_.motion && (!tracked.ledger.moves() || book.motion().size() == 0)) return;
   if (!wants(Metric::true_sigma_m) && !wants(Metric::ledger_anees) && !wants(Metric::ledger_nees)) {
     return;
   }
   const auto P = true_covariance(belief.omega, tracked.ledger, book);
   if (!P) return;
-  const double n = dimension_;
-  at(values, Metric::true_sigma_m) = std::sqrt(P->trace() / n);
-  at(values, Metric::ledger_anees) = belief.omega.cwiseProduct(*P).sum() / n;
+  at(values, Metric::true_sigma_m) = position_sigma(*P);
+  at(values, Metric::ledger_anees) = belief.omega.cwiseProduct(*P).sum() / dimension_;
   if (!assessment.state) return;
   at(values, Metric::ledger_nees) =
       gaussian::mahalanobis_squared(*assessment.state - truth(subject), *P).value_or(kNone);
 }
 
 gaussian::Vector Witness::truth(int subject) const {
-  const std::vector<double>& values = options_.subjects[static_cast<std::size_t>(subject)].truth;
+  const auto values =
+      options_.subjects[static_cast<std::size_t>(subject)].truth_at(stamp_, dimension_);
   gaussian::Vector x(dimension_);
   for (int i = 0; i < dimension_; ++i) x(i) = values[static_cast<std::size_t>(i)];
   return x;
@@ -230,8 +294,8 @@ void Witness::finish(const Watched& watched) {
     const gaussian::Belief& belief =
         watched.estimator ? watched.estimator->tracked(subject).belief : central_[s].belief;
     const gaussian::Assessment assessment = gaussian::assess(belief);
-    const double sigma = assessment.claimed_sigma.value_or(kNone);
-    distance += assessment.state ? (*assessment.state - truth(subject)).norm() : kNone;
+    const double sigma = claimed_sigma(belief, assessment);
+    distance += assessment.state ? (*assessment.state - truth(subject)).head(axes_).norm() : kNone;
     variance += sigma * sigma;
   }
   const auto subjects = static_cast<double>(central_.size());
@@ -240,12 +304,15 @@ void Witness::finish(const Watched& watched) {
   if (!watched.estimator) return;
   scalar("not_positive_share",
          static_cast<double>(watched.not_positive) / static_cast<double>(watched.samples));
-  if (options_.ledger) scalar("reach_gap_max", watched.reach_gap_max, Origin::ledger);
-  const StaticGaussianEstimator::Counts& counts = watched.estimator->counts();
+  if (options_.ledger && !options_.motion) {
+    scalar("reach_gap_max", watched.reach_gap_max, Origin::ledger);
+  }
+  const EstimatorCounts& counts = watched.estimator->counts();
   scalar("measurements", static_cast<double>(counts.measurements));
   scalar("fusions", static_cast<double>(counts.fusions));
   scalar("fusions_skipped", static_cast<double>(counts.skipped));
   scalar("messages_refused", static_cast<double>(counts.refused));
+  if (options_.motion) scalar("news_late", static_cast<double>(counts.late));
   scalar("fusion_gain_max", counts.fusion_gain_max);
 }
 

@@ -12,22 +12,29 @@
 #include <vector>
 
 #include "agents/agreement.hpp"
-#include "agents/estimators/static_gaussian.hpp"
+#include "agents/estimator.hpp"
 #include "agents/metrics.hpp"
 #include "sim/kernel/simulation.hpp"
 
 namespace hearsay {
 
-/// A static state that agents estimate, and its true value (n numbers).
+/// A state that agents estimate, and the truth.
 struct Subject {
   std::string name;
+  /// n numbers; of a moving state n for each stamp, from 0 to the end of the run.
   std::vector<double> truth;
+  /// True R (n×n) of a step, if its motion follows the agents' model; 0×0: it does not.
+  gaussian::Matrix motion_noise = {};
+
+  /// n numbers, from 0 on; beyond the last stamp the last.
+  std::span<const double> truth_at(std::int64_t stamp, int n) const;
 };
 
 class Witness {
  public:
   struct Options {
     std::vector<Subject> subjects;                ///< all of the same dimension n
+    std::optional<MotionModel> motion;            ///< nothing: they stand still
     std::vector<Metric> series;                   ///< kept over time
     Duration series_period;                       ///< > 0: samples at 0, period, … and at the end
     bool ledger = true;                           ///< keep ledgers and what follows from them
@@ -37,11 +44,11 @@ class Witness {
   /// `simulation` must outlive the witness.
   Witness(Simulation& simulation, Options options);
 
-  /// An agent made a measurement. @return its index in the subject's book.
+  /// An agent made a measurement now. @return its index in the subject's book.
   std::size_t measured(int subject, const gaussian::Belief& information);
 
   /// From now on `agent`'s beliefs are sampled. Agents in ascending number.
-  void watch(AgentId agent, const StaticGaussianEstimator& estimator);
+  void watch(AgentId agent, Estimator& estimator);
 
   /// For estimators: where their ledgers come from; nullptr if ledgers are off.
   LedgerPool* ledgers() { return options_.ledger ? &pool_ : nullptr; }
@@ -56,7 +63,7 @@ class Witness {
  private:
   struct Watched {
     AgentId agent;
-    const StaticGaussianEstimator* estimator;
+    Estimator* estimator;
     double reach_gap_max = 0.0;
     std::uint64_t samples = 0;
     std::uint64_t not_positive = 0;
@@ -68,12 +75,20 @@ class Witness {
   void schedule_agreement(Time at);
   void sample();
   void sample_agreement();
+  /// Brings the central filter and all agents to the present.
+  void advance();
   /// Measures how far the estimates of those who are up lie apart.
   void gather_spreads();
   bool up(AgentId agent) const { return !options_.up || options_.up(agent); }
   double disagreement(const Watched& watched, const gaussian::Assessment& assessment,
                       int subject) const;
   void sample(Watched& watched, int subject);
+  /// √(trace/axes) of the block of P (n×n) that belongs to positions.
+  double position_sigma(const gaussian::Matrix& P) const;
+  double claimed_sigma(const gaussian::Belief& belief,
+                       const gaussian::Assessment& assessment) const;
+  void measure_velocity(const gaussian::Belief& belief, const gaussian::Vector& error,
+                        Values& values) const;
   Values measure(const TrackedBelief& tracked, const gaussian::Assessment& assessment, int subject,
                  bool central) const;
   void measure_ledger(const TrackedBelief& tracked, const gaussian::Assessment& assessment,
@@ -86,6 +101,8 @@ class Witness {
   Simulation& simulation_;
   Options options_;
   int dimension_;
+  int axes_;  // positions among the n numbers, first
+  std::int64_t stamp_ = 0;
   std::array<bool, series_metric_count> wanted_{};
   std::array<NameId, series_metric_count> metric_names_{};
   std::vector<NameId> subject_names_;

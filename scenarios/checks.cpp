@@ -24,6 +24,7 @@ class Checker {
     }
     check_services(file_);
     check_motion(file_);
+    check_estimators(file_);
     check_traffic(file_);
     check_radio(file_);
     check_agreement();
@@ -105,7 +106,7 @@ void Checker::check_targets() {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < s_.world.targets.size(); ++i) {
     TargetSpec& target = s_.world.targets[i];
-    if (target.position_m.empty()) fail(targets[i]["position_m"], "missing");
+    if (!target.position_m && !target.motion) fail(targets[i]["position_m"], "missing");
     if (target.name.empty()) target.name = "target" + std::to_string(i);
     names.push_back(target.name);
   }
@@ -151,8 +152,8 @@ void Checker::check_position_sensor(const AgentSpec& agent, const KeyPath& path)
   if (!sensor.sigma_m && !along) {
     fail(path, "kind \"position\" needs sigma_m, or sigma_along_m and sigma_across_m");
   }
-  if (along && !has_place(agent)) {
-    fail(path["sigma_along_m"],
+  if ((along || sensor.range_max_m) && !has_place(agent)) {
+    fail(path[along ? "sigma_along_m" : "range_max_m"],
          "needs to know where the agent stands: position_m, circle or motion");
   }
 }

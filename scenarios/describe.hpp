@@ -34,7 +34,8 @@ inline std::vector<std::string> service_names() {
 template <class V>
 void describe(V& v, TargetSpec& s) {
   v.field("name", s.name, anything(), "its name in records; default target<i>");
-  v.field("position_m", s.position_m, anything(), "where it is: 2 coordinates");
+  v.field("position_m", s.position_m, anything(), "where it is, or begins: 2 coordinates");
+  v.table("motion", s.motion, "how it moves; default: it stands still");
 }
 
 template <class V>
@@ -49,6 +50,9 @@ void describe(V& v, LogSpec& s) {
 template <class V>
 void describe(V& v, WorldSpec& s) {
   v.table("targets", s.targets, "what there is to be found");
+  v.field("step_s", s.step_s, time_span(false),
+          "agents look at targets and believe in them at multiples of this; default: targets stand "
+          "still");
   v.table("log", s.log, "a recorded data set instead of targets and synthetic sensors");
 }
 
@@ -69,6 +73,8 @@ void describe(V& v, SensorSpec& s) {
           "position: noise along the line of sight, instead of sigma_m");
   v.field("sigma_across_m", s.sigma_across_m, greater_than_zero(),
           "position: noise across the line of sight, with sigma_along_m");
+  v.field("range_max_m", s.range_max_m, greater_than_zero(),
+          "position: what is farther away is not seen; default: no limit");
   v.field("sigma_range_m", s.sigma_range_m, greater_than_zero(), "log: noise of the range");
   v.field("sigma_bearing_rad", s.sigma_bearing_rad, greater_than_zero(),
           "log: noise of the bearing");
@@ -80,8 +86,16 @@ void describe(V& v, SensorSpec& s) {
 
 template <class V>
 void describe(V& v, EstimatorSpec& s) {
-  v.field("kind", s.kind, one_of({"static-gaussian"}), "what a belief is");
+  v.field(
+      "kind", s.kind, one_of({"static-gaussian", "moving-gaussian", "trajectory-gaussian"}),
+      "what a belief is about: states that stand still, states as they are now, or as they were "
+      "during the last window_s");
   v.field("fusion", s.fusion, one_of(fusion_names()), "how a belief that was heard is taken in");
+  v.field("acceleration_psd_m2_per_s3", s.acceleration_psd_m2_per_s3, greater_than_zero(),
+          "all but static-gaussian: power spectral density of the white-noise acceleration it "
+          "expects, an axis");
+  v.field("window_s", s.window_s, time_span(false),
+          "trajectory-gaussian: how far back it can be told news; default 20 steps");
 }
 
 template <class V>

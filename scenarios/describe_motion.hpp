@@ -1,4 +1,4 @@
-// What agents.motion of a scenario file may say; see describe.hpp.
+// What agents.motion and world.targets.motion of a scenario file may say; see describe.hpp.
 #pragma once
 
 #include "scenarios/motion_spec.hpp"
@@ -10,8 +10,9 @@ template <class V>
 void describe(V& v, MotionSpec& s) {
   const Allowed coordinate = between(-1e12, 1e12);
   v.field("kind", s.kind,
-          one_of({"hover", "waypoints", "lawn-mower", "random-waypoint", "gauss-markov", "track"}),
-          "how it moves");
+          one_of({"hover", "waypoints", "lawn-mower", "random-waypoint", "gauss-markov", "track",
+                  "white-noise-acceleration"}),
+          "how it moves; \"track\" is for agents, \"white-noise-acceleration\" for targets");
   v.field("altitude_m", s.altitude_m, coordinate, "z, always the same");
   v.field("points_m", s.points_m, coordinate, "waypoints: from one to the next");
   v.field("speed_m_per_s", s.speed_m_per_s, greater_than_zero(), "waypoints, lawn-mower");
@@ -36,6 +37,10 @@ void describe(V& v, MotionSpec& s) {
   v.field("alpha", s.alpha, between(0.0, 1.0),
           "gauss-markov: correlation of one update with the next, below 1");
   v.field("update_period_s", s.update_period_s, time_span(false), "gauss-markov; default 1");
+  v.field("velocity_m_per_s", s.velocity_m_per_s, coordinate,
+          "white-noise-acceleration: along x and y, at first; default 0, 0");
+  v.field("acceleration_psd_m2_per_s3", s.acceleration_psd_m2_per_s3, at_least(0.0),
+          "white-noise-acceleration: power spectral density, an axis");
   v.field("file", s.file, anything(),
           "track: CSV with t_s,agent,x_m,y_m; relative to the scenario file, or with --set as "
           "given");

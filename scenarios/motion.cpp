@@ -5,6 +5,7 @@
 #include <string>
 
 #include "sim/kernel/error.hpp"
+#include "sim/world/target_states.hpp"
 
 namespace hearsay {
 namespace {
@@ -70,9 +71,10 @@ bool has_motion(const Scenario& scenario) {
                      [](const AgentSpec& agent) { return agent.motion.has_value(); });
 }
 
-std::unique_ptr<Motion> make_motion(const AgentSpec& agent, const Place& place_m, AgentId id,
-                                    std::uint64_t seed) {
-  const MotionSpec spec = agent.motion.value_or(MotionSpec{});
+namespace {
+
+std::unique_ptr<Motion> motion_of(const MotionSpec& spec, const Place& place_m, AgentId id,
+                                  std::uint64_t seed) {
   if (spec.kind == "waypoints") return motion::make(waypoints_of(spec, place_m));
   if (spec.kind == "lawn-mower") return motion::make(lawn_mower_of(spec, place_m));
   if (spec.kind == "random-waypoint") return motion::make(random_waypoint_of(spec), seed, id);
@@ -85,6 +87,43 @@ std::unique_ptr<Motion> make_motion(const AgentSpec& agent, const Place& place_m
     throw InputError("agent " + std::to_string(id) + " hovers, but nobody knows where");
   }
   return motion::make(motion::Hover{.position_m = *place_m, .altitude_m = spec.altitude_m});
+}
+
+// Draws of a target's path: beside those of agents, which are numbered from 0 on.
+AgentId drawn_as(int target) { return -2 - target; }
+
+}  // namespace
+
+std::unique_ptr<Motion> make_motion(const AgentSpec& agent, const Place& place_m, AgentId id,
+                                    std::uint64_t seed) {
+  return motion_of(agent.motion.value_or(MotionSpec{}), place_m, id, seed);
+}
+
+std::unique_ptr<Motion> make_motion(const TargetSpec& target, int number, std::uint64_t seed) {
+  Place place_m;
+  if (target.position_m) place_m = {target.position_m->at(0), target.position_m->at(1)};
+  return motion_of(target.motion.value_or(MotionSpec{}), place_m, drawn_as(number), seed);
+}
+
+std::vector<std::vector<double>> target_states_of(const Scenario& scenario, Time end,
+                                                  std::uint64_t seed) {
+  const Duration period = Duration::seconds(scenario.world.step_s.value());
+  const auto count =
+      static_cast<std::size_t>(end.nanoseconds() / period.nanoseconds()) + std::size_t{1};
+  std::vector<std::vector<double>> states;
+  for (const TargetSpec& target : scenario.world.targets) {
+    const auto number = static_cast<int>(states.size());
+    if (!target.motion || target.motion->kind != "white-noise-acceleration") {
+      states.push_back(target_states(*make_motion(target, number, seed), period, count));
+      continue;
+    }
+    TargetState start{target.position_m->at(0), target.position_m->at(1), 0.0, 0.0};
+    const auto& velocity = target.motion->velocity_m_per_s;
+    if (velocity) std::copy_n(velocity->begin(), 2, start.begin() + 2);
+    states.push_back(target_states(start, target.motion->acceleration_psd_m2_per_s3.value(), period,
+                                   count, seed, number));
+  }
+  return states;
 }
 
 AgentPaths::AgentPaths(const Scenario& scenario, const std::vector<Place>& places_m,

@@ -23,6 +23,15 @@ std::unique_ptr<Motion> make_motion(const AgentSpec& spec,
                                     const std::optional<std::array<double, 2>>& place_m, AgentId id,
                                     std::uint64_t seed);
 
+/// The same of target `target` of a scenario that was checked; of one that stands still, too. Not
+/// for white-noise acceleration.
+std::unique_ptr<Motion> make_motion(const TargetSpec& spec, int target, std::uint64_t seed);
+
+/// What is true of each target at the stamps of a run (world.step_s), 4 numbers a stamp
+/// (sim/world/target_states.hpp).
+std::vector<std::vector<double>> target_states_of(const Scenario& scenario, Time end,
+                                                  std::uint64_t seed);
+
 /// The paths of all agents of a scenario that was checked.
 class AgentPaths final : public PathSource {
  public:

@@ -30,25 +30,29 @@ std::vector<Key> keys_of(const MotionSpec& s) {
   using enum Need;
   const std::vector<std::string> way = {"waypoints"}, mow = {"lawn-mower"},
                                  wander = {"random-waypoint"}, roam = {"gauss-markov"},
-                                 track = {"track"}, both = {"waypoints", "lawn-mower"},
+                                 track = {"track"}, accelerate = {"white-noise-acceleration"},
+                                 both = {"waypoints", "lawn-mower"},
                                  areas = {"lawn-mower", "random-waypoint", "gauss-markov"};
-  return {{"points_m", needed, way, !s.points_m.empty(), ", as [[0, 0], [100, 50]]"},
-          {"speed_m_per_s", needed, both, s.speed_m_per_s.has_value()},
-          {"pause_s", allowed, way, s.pause_s.has_value()},
-          {"repeat", allowed, both, s.repeat.has_value()},
-          {"area_m", needed, areas, !s.area_m.empty(), ", as [[0, 0], [100, 50]]"},
-          {"lane_spacing_m", needed, mow, s.lane_spacing_m.has_value()},
-          {"speed_min_m_per_s", needed, wander, s.speed_min_m_per_s.has_value()},
-          {"speed_max_m_per_s", needed, wander, s.speed_max_m_per_s.has_value()},
-          {"pause_min_s", allowed, wander, s.pause_min_s.has_value()},
-          {"pause_max_s", allowed, wander, s.pause_max_s.has_value()},
-          {"speed_mean_m_per_s", needed, roam, s.speed_mean_m_per_s.has_value()},
-          {"speed_sigma_m_per_s", needed, roam, s.speed_sigma_m_per_s.has_value()},
-          {"direction_mean_rad", allowed, roam, s.direction_mean_rad.has_value()},
-          {"direction_sigma_rad", needed, roam, s.direction_sigma_rad.has_value()},
-          {"alpha", needed, roam, s.alpha.has_value()},
-          {"update_period_s", allowed, roam, s.update_period_s.has_value()},
-          {"file", needed, track, s.file.has_value(), ", a CSV file t_s,agent,x_m,y_m"}};
+  return {
+      {"points_m", needed, way, !s.points_m.empty(), ", as [[0, 0], [100, 50]]"},
+      {"speed_m_per_s", needed, both, s.speed_m_per_s.has_value()},
+      {"pause_s", allowed, way, s.pause_s.has_value()},
+      {"repeat", allowed, both, s.repeat.has_value()},
+      {"area_m", needed, areas, !s.area_m.empty(), ", as [[0, 0], [100, 50]]"},
+      {"lane_spacing_m", needed, mow, s.lane_spacing_m.has_value()},
+      {"speed_min_m_per_s", needed, wander, s.speed_min_m_per_s.has_value()},
+      {"speed_max_m_per_s", needed, wander, s.speed_max_m_per_s.has_value()},
+      {"pause_min_s", allowed, wander, s.pause_min_s.has_value()},
+      {"pause_max_s", allowed, wander, s.pause_max_s.has_value()},
+      {"speed_mean_m_per_s", needed, roam, s.speed_mean_m_per_s.has_value()},
+      {"speed_sigma_m_per_s", needed, roam, s.speed_sigma_m_per_s.has_value()},
+      {"direction_mean_rad", allowed, roam, s.direction_mean_rad.has_value()},
+      {"direction_sigma_rad", needed, roam, s.direction_sigma_rad.has_value()},
+      {"alpha", needed, roam, s.alpha.has_value()},
+      {"update_period_s", allowed, roam, s.update_period_s.has_value()},
+      {"velocity_m_per_s", allowed, accelerate, s.velocity_m_per_s.has_value()},
+      {"acceleration_psd_m2_per_s3", needed, accelerate, s.acceleration_psd_m2_per_s3.has_value()},
+      {"file", needed, track, s.file.has_value(), ", a CSV file t_s,agent,x_m,y_m"}};
 }
 
 std::string either(const std::vector<std::string>& kinds) {
@@ -72,10 +76,17 @@ class MotionChecker {
       if (agent.motion) check(agents_[i], agent, first);
       first += static_cast<std::size_t>(agent.count);
     }
+    const KeyPath world = top_["world"];
+    const KeyPath targets = world["targets"];
+    for (std::size_t i = 0; i < file_.scenario.world.targets.size(); ++i) {
+      const TargetSpec& target = file_.scenario.world.targets[i];
+      if (target.motion) check(targets[i], target, static_cast<int>(i));
+    }
   }
 
  private:
   void check(const KeyPath& path, AgentSpec& agent, std::size_t first);
+  void check(const KeyPath& path, const TargetSpec& target, int number) const;
   void check_keys(const KeyPath& path, const MotionSpec& spec) const;
   void check_place(const KeyPath& path, const AgentSpec& agent) const;
   void check_values(const KeyPath& path, const MotionSpec& spec) const;
@@ -95,12 +106,43 @@ void MotionChecker::check(const KeyPath& path, AgentSpec& agent, std::size_t fir
     file_.fail(motion_path,
                "not with topology = \"random-geometric\", which draws where agents stand");
   }
+  if (agent.motion->kind == "white-noise-acceleration") {
+    file_.fail(motion_path["kind"], "\"white-noise-acceleration\" is for targets, not for agents");
+  }
   check_keys(motion_path, *agent.motion);
   check_place(path, agent);
   check_values(motion_path, *agent.motion);
   if (agent.motion->kind == "track") take_tracks(motion_path, agent, first);
   try {
     make_motion(agent, places_m_[first], static_cast<AgentId>(first), file_.scenario.seed);
+  } catch (const InputError& error) {
+    file_.fail(motion_path, error.what());
+  }
+}
+
+void MotionChecker::check(const KeyPath& path, const TargetSpec& target, int number) const {
+  const MotionSpec& spec = *target.motion;
+  const KeyPath motion_path = path["motion"];
+  if (spec.kind == "track") {
+    file_.fail(motion_path["kind"], "\"track\" is for agents, not for targets");
+  }
+  check_keys(motion_path, spec);
+  check_values(motion_path, spec);
+  const bool draws = spec.kind == "random-waypoint" || spec.kind == "gauss-markov";
+  if (draws == target.position_m.has_value() && spec.kind != "waypoints" &&
+      spec.kind != "lawn-mower") {
+    file_.fail(path["position_m"],
+               draws ? "not with motion.kind = \"" + spec.kind + "\", which draws where it begins"
+                     : "missing; where it begins");
+  }
+  if (!file_.scenario.world.step_s) {
+    file_.fail(
+        motion_path,
+        "needs world.step_s: how often agents look at targets that move and believe in them");
+  }
+  if (spec.kind == "white-noise-acceleration") return;
+  try {
+    make_motion(target, number, file_.scenario.seed);
   } catch (const InputError& error) {
     file_.fail(motion_path, error.what());
   }

@@ -16,7 +16,8 @@ using Tracks = std::vector<std::vector<motion::TrackSample>>;
 
 /// Only altitude_m belongs to every kind. What is marked with a kind is for that one alone.
 struct MotionSpec {
-  /// "hover" | "waypoints" | "lawn-mower" | "random-waypoint" | "gauss-markov" | "track"
+  /// "hover" | "waypoints" | "lawn-mower" | "random-waypoint" | "gauss-markov" | "track" |
+  /// "white-noise-acceleration", of targets alone
   std::string kind = "hover";
   double altitude_m = 0.0;
   std::vector<std::array<double, 2>> points_m;  ///< waypoints: needed
@@ -37,8 +38,12 @@ struct MotionSpec {
   std::optional<double> direction_sigma_rad;  ///< gauss-markov: needed, ≥ 0
   std::optional<double> alpha;                ///< gauss-markov: needed, [0, 1)
   std::optional<double> update_period_s;      ///< gauss-markov, > 0; default 1
-  std::optional<std::string> file;            ///< track: needed
-  std::shared_ptr<const Tracks> tracks;       ///< what is in the file; the checks read it
+  std::optional<std::vector<double>>
+      velocity_m_per_s;  ///< white-noise-acceleration: at first; default (0, 0)
+  /// white-noise-acceleration: needed, ≥ 0
+  std::optional<double> acceleration_psd_m2_per_s3;
+  std::optional<std::string> file;       ///< track: needed
+  std::shared_ptr<const Tracks> tracks;  ///< what is in the file; the checks read it
 };
 
 }  // namespace hearsay

@@ -268,7 +268,10 @@ Models motions() {
                  "direction_sigma_rad", "alpha", "update_period_s"}),
            "T. Camp, J. Boleng, V. Davies, Wireless Comm. Mobile Computing 2(5), 2002"},
           {"motion", "track", by, "straight between places at times from a CSV file",
-           keys({"file"}), ""}};
+           keys({"file"}), ""},
+          {"motion", "white-noise-acceleration", by,
+           "of targets alone: speed and course change by white noise, as a tracking filter expects",
+           keys({"velocity_m_per_s", "acceleration_psd_m2_per_s3"}), "Merino 2007, eq. 3.58-3.59"}};
 }
 
 }  // namespace

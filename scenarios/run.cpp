@@ -5,6 +5,7 @@
 
 #include "scenarios/channel.hpp"
 #include "scenarios/network.hpp"
+#include "scenarios/targets.hpp"
 #include "scenarios/traffic.hpp"
 #include "sim/kernel/error.hpp"
 
@@ -30,8 +31,9 @@ std::vector<PositionSensor> position_sensors(const AgentSpec& spec, const WorldS
   const double along = spec.sensor.sigma_m.value_or(spec.sensor.sigma_along_m.value_or(1.0));
   const double across = spec.sensor.sigma_m.value_or(spec.sensor.sigma_across_m.value_or(1.0));
   for (const TargetSpec& target : world.targets) {
-    const std::array target_m{target.position_m.at(0), target.position_m.at(1)};
     std::array<double, 2> sensor_m = place.value_or(std::array{0.0, 0.0});
+    std::array target_m{sensor_m[0] + 1.0, sensor_m[1]};  // it is where it will be
+    if (!target.motion) target_m = {target.position_m->at(0), target.position_m->at(1)};
     if (spec.motion) sensor_m = {target_m[0] - 1.0, target_m[1]};  // it looks from where it will be
     if (along != across && sensor_m == target_m) {
       throw InputError("agent at the place of target '" + target.name +
@@ -137,12 +139,14 @@ std::shared_ptr<const PreparedScenario> prepare(Scenario scenario, const Catalog
   prepared->series = metrics_of(s.record);
   prepared->observations.resize(prepared->specs.size());
   for (const TargetSpec& target : s.world.targets) {
-    prepared->subjects.push_back({target.name, target.position_m});
+    prepared->subjects.push_back(
+        {target.name, target.position_m.value_or(std::vector<double>{0.0, 0.0}), {}});
   }
   for (std::size_t i = 0; i < prepared->specs.size(); ++i) {
     prepared->sensors.push_back(
         position_sensors(*prepared->specs[i], s.world, prepared->places[i]));
   }
+  prepared->motion = motion_model_of(s);
   if (s.world.log) prepare_log(*prepared, logs);
   require_subjects(*prepared);
   prepared->end = Time::at(s.duration_s ? Duration::seconds(*s.duration_s) : prepared->log->span);
@@ -199,9 +203,14 @@ void Run::build_agents(const Catalog& catalog) {
                                    [](const AgentSpec* spec) { return spec->kind == "estimator"; });
   if (watched) {
     record.agent(central_agent, "central", "central");
+    subjects_ = prepared_->subjects;
+    if (prepared_->motion) {
+      put_in_motion(subjects_, scenario, *prepared_->motion, prepared_->end, simulation_.seed());
+    }
     witness_ = std::make_unique<Witness>(
         simulation_,
-        Witness::Options{.subjects = prepared_->subjects,
+        Witness::Options{.subjects = subjects_,
+                         .motion = prepared_->motion,
                          .series = prepared_->series,
                          .series_period = Duration::seconds(scenario.record.series_period_s),
                          .ledger = scenario.record.ledger == "on",
@@ -246,14 +255,22 @@ std::unique_ptr<Agent> Run::make_agent(AgentId id, const Catalog& catalog) {
 }
 
 std::unique_ptr<Agent> Run::make_estimator(AgentId id) {
+  const Scenario& scenario = prepared_->scenario;
   const auto i = static_cast<std::size_t>(id);
   const AgentSpec& spec = *prepared_->specs[i];
   EstimatorAgent::Options options;
   options.rule = gaussian::rule_by_name(spec.estimator.fusion).value();
   options.subjects = static_cast<int>(prepared_->subjects.size());
-  options.dimension = static_cast<int>(prepared_->subjects.front().truth.size());
+  options.motion = prepared_->motion;
+  if (spec.estimator.kind == "trajectory-gaussian") {
+    options.window = window_steps_of(spec.estimator, scenario.world);
+  }
+  options.dimension = options.motion ? static_cast<int>(options.motion->step.A.rows())
+                                     : static_cast<int>(subjects_.front().truth.size());
   options.sensors = prepared_->sensors[i];
   options.moves = spec.motion.has_value();
+  options.range_max_m = spec.sensor.range_max_m;
+  options.targets = subjects_;
   options.sensor_period = Duration::seconds(spec.sensor.period_s);
   options.sensor_start = Time::at(Duration::seconds(spec.sensor.start_s));
   if (spec.sensor.end_s) options.sensor_end = Time::at(Duration::seconds(*spec.sensor.end_s));

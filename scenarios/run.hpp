@@ -51,6 +51,7 @@ struct PreparedScenario {
   AgentPlaces places;                                ///< of agents
   std::optional<LinkPlan> links;                     ///< unless the graph is drawn anew in each run
   std::vector<Subject> subjects;                     ///< empty: nothing for the witness to watch
+  std::optional<MotionModel> motion;                 ///< of subjects that move
   std::vector<std::vector<PositionSensor>> sensors;  ///< of each agent
   std::vector<std::vector<Observation>> observations;  ///< of each agent, from a log
   std::shared_ptr<const mrclam::Dataset> log;
@@ -93,6 +94,7 @@ class Run {
   // The order matters: what is below is destroyed first and may use what is above.
   std::shared_ptr<const PreparedScenario> prepared_;
   Simulation simulation_;
+  std::vector<Subject> subjects_;      // with the truth of this run
   std::unique_ptr<Witness> witness_;   // owns the riders of packets in flight
   std::unique_ptr<AgentPaths> paths_;  // null if nobody moves, and so the next two
   std::unique_ptr<Places> places_;

@@ -15,8 +15,9 @@
 namespace hearsay {
 
 struct TargetSpec {
-  std::string name;                ///< default "target<i>"
-  std::vector<double> position_m;  ///< 2 coordinates
+  std::string name;                               ///< default "target<i>"
+  std::optional<std::vector<double>> position_m;  ///< 2 coordinates; where it begins if it moves
+  std::optional<MotionSpec> motion;               ///< none: it stands still
 };
 
 /// A recorded data set that takes the place of synthetic sensors.
@@ -28,6 +29,9 @@ struct LogSpec {
 
 struct WorldSpec {
   std::vector<TargetSpec> targets;  ///< empty with a log: its landmarks
+  /// > 0: agents look at targets and believe in them at multiples of this; none: targets stand
+  /// still
+  std::optional<double> step_s;
   std::optional<LogSpec> log;
 };
 
@@ -44,6 +48,7 @@ struct SensorSpec {
   std::optional<double> sigma_m;         ///< position: same in every direction, > 0
   std::optional<double> sigma_along_m;   ///< position: along the line of sight, with …
   std::optional<double> sigma_across_m;  ///< … across it; both instead of sigma_m
+  std::optional<double> range_max_m;     ///< position: what is farther away is not seen, > 0
   double sigma_range_m = 0.15;           ///< log, > 0
   double sigma_bearing_rad = 0.08;       ///< log, > 0
   double sigma_heading_rad = 0.03;       ///< log: pose, ≥ 0
@@ -51,8 +56,12 @@ struct SensorSpec {
 };
 
 struct EstimatorSpec {
+  /// "static-gaussian" | "moving-gaussian" | "trajectory-gaussian"
   std::string kind = "static-gaussian";
   std::string fusion = "none";  ///< a name of gaussian::rules()
+  /// All but static-gaussian: needed, of the white-noise acceleration it expects, > 0
+  std::optional<double> acceleration_psd_m2_per_s3;
+  std::optional<double> window_s;  ///< trajectory-gaussian: T, a multiple of world.step_s
   bool operator==(const EstimatorSpec&) const = default;
 };
 

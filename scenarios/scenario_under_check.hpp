@@ -72,7 +72,11 @@ void check_links(ScenarioUnderCheck& file);
 /// @throws InputError.
 void check_services(ScenarioUnderCheck& file);
 
-/// Checks how agents move, and reads their tracks.
+/// Checks that estimators, sensors and the motion of targets go together.
+/// @throws InputError.
+void check_estimators(ScenarioUnderCheck& file);
+
+/// Checks how agents and targets move, and reads their tracks.
 /// @throws InputError.
 void check_motion(ScenarioUnderCheck& file);
 

@@ -11,8 +11,6 @@ using gaussian::Belief;
 using gaussian::Memory;
 using gaussian::Sends;
 
-TrackedBelief unknown(int dimension) { return {Belief::unknown(dimension), Ledger{}}; }
-
 }  // namespace
 
 RiderPtr LedgerPool::make(LedgerRider*& rider) {
@@ -35,7 +33,7 @@ StaticGaussianEstimator::StaticGaussianEstimator(const Options& options,
     workspace_ = own_workspace_.get();
   }
   const auto subjects = static_cast<std::size_t>(options.subjects);
-  own_.assign(subjects, unknown(options.dimension));
+  own_.assign(subjects, unknown());
   if (rule_.sends == Sends::local_update) unsent_ = own_;
   for (const AgentId id : neighbours) neighbours_.push_back(make_neighbour(id));
 }
@@ -43,9 +41,35 @@ StaticGaussianEstimator::StaticGaussianEstimator(const Options& options,
 StaticGaussianEstimator::Neighbour StaticGaussianEstimator::make_neighbour(AgentId id) const {
   Neighbour neighbour{.id = id, .memory = {}};
   if (rule_.memory != Memory::nothing) {
-    neighbour.memory.assign(own_.size(), unknown(options_.dimension));
+    neighbour.memory.assign(own_.size(), unknown());
   }
   return neighbour;
+}
+
+TrackedBelief StaticGaussianEstimator::unknown() const {
+  return {Belief::unknown(options_.dimension),
+          keeps_ledger() && options_.motion ? Ledger::moving(options_.dimension) : Ledger{}};
+}
+
+void StaticGaussianEstimator::advance(std::int64_t now) {
+  if (!options_.motion) return;
+  require(now >= stamp_, "an estimator does not go back in time");
+  for (; stamp_ < now; ++stamp_) {
+    for (TrackedBelief& tracked : own_) predict(tracked, stamp_);
+    for (TrackedBelief& tracked : unsent_) predict(tracked, stamp_);
+    for (Neighbour& neighbour : neighbours_) {
+      for (TrackedBelief& tracked : neighbour.memory) predict(tracked, stamp_);
+    }
+  }
+}
+
+void StaticGaussianEstimator::predict(TrackedBelief& tracked, std::int64_t step) const {
+  if (tracked.belief.omega.isZero(0.0) && tracked.ledger.weights().empty()) return;
+  const gaussian::Prediction predicted =
+      gaussian::predict_with_gain(tracked.belief, options_.motion->step);
+  tracked.belief = predicted.belief;
+  if (!keeps_ledger()) return;
+  tracked.ledger.predict(predicted.F, predicted.belief.omega, static_cast<std::size_t>(step));
 }
 
 void StaticGaussianEstimator::measured(int subject, const Belief& information,
@@ -69,7 +93,7 @@ StaticGaussianEstimator::Speech StaticGaussianEstimator::speech(AgentId neighbou
   Speech speech;
   if (keeps_ledger()) speech.rider = options_.ledgers->make(rider);
 
-  gaussian::Message& message = workspace_->outgoing;
+  gaussian::Message& message = workspace_->outgoing.message;
   std::size_t spoken = 0;
   message.beliefs.resize(own_.size());
   if (rider) rider->ledgers.resize(own_.size());
@@ -91,13 +115,18 @@ StaticGaussianEstimator::Speech StaticGaussianEstimator::speech(AgentId neighbou
   if (spoken == 0) return {};
   message.incarnation = incarnation_;
   message.count = next_count_++;
-  gaussian::encode(message, workspace_->bytes);
+  if (options_.motion) {
+    workspace_->outgoing.stamp = stamp_ * options_.motion->period.nanoseconds();
+    gaussian::encode(workspace_->outgoing, workspace_->bytes);
+  } else {
+    gaussian::encode(message, workspace_->bytes);
+  }
   speech.bytes = workspace_->bytes;
   return speech;
 }
 
 void StaticGaussianEstimator::sent(AgentId neighbour) {
-  for (TrackedBelief& unsent : unsent_) unsent = unknown(options_.dimension);
+  for (TrackedBelief& unsent : unsent_) unsent = unknown();
   if (rule_.memory != Memory::last_exchanged) return;
   for (Neighbour& to : neighbours_) {
     if (neighbour == no_agent || neighbour == to.id) to.memory = own_;
@@ -107,8 +136,8 @@ void StaticGaussianEstimator::sent(AgentId neighbour) {
 void StaticGaussianEstimator::heard(AgentId from, std::span<const std::byte> bytes,
                                     const Rider* rider) {
   Neighbour* sender = find(from);
-  gaussian::Message& message = workspace_->incoming;
-  if (sender == nullptr || !gaussian::decode(bytes, message) || outdated(*sender, message)) {
+  const gaussian::Message& message = workspace_->incoming.message;
+  if (sender == nullptr || !decode(bytes, workspace_->incoming) || outdated(*sender, message)) {
     ++counts_.refused;
     return;
   }
@@ -125,9 +154,26 @@ void StaticGaussianEstimator::heard(AgentId from, std::span<const std::byte> byt
   const auto* ledgers = static_cast<const LedgerRider*>(rider);
   for (std::size_t i = 0; i < message.beliefs.size(); ++i) {
     const gaussian::BeliefEntry& entry = message.beliefs[i];
-    fuse(static_cast<int>(entry.subject), *sender, entry.belief,
-         ledgers ? &ledgers->ledgers[i] : nullptr);
+    const auto subject = static_cast<int>(entry.subject);
+    const Ledger* ledger = ledgers ? &ledgers->ledgers[i] : nullptr;
+    if (!options_.motion) {
+      fuse(subject, *sender, entry.belief, ledger);
+      continue;
+    }
+    received_.belief = entry.belief;
+    if (ledger != nullptr) received_.ledger = *ledger;
+    std::int64_t step = workspace_->incoming.stamp / options_.motion->period.nanoseconds();
+    for (; step < stamp_; ++step) predict(received_, step);
+    fuse(subject, *sender, received_.belief, ledger ? &received_.ledger : nullptr);
   }
+}
+
+bool StaticGaussianEstimator::decode(std::span<const std::byte> bytes,
+                                     gaussian::StampedMessage& message) const {
+  if (!options_.motion) return gaussian::decode(bytes, message.message);
+  const std::int64_t period = options_.motion->period.nanoseconds();
+  return gaussian::decode(bytes, message) && message.stamp >= 0 &&
+         message.stamp <= stamp_ * period && message.stamp % period == 0;
 }
 
 bool StaticGaussianEstimator::outdated(Neighbour& from, const gaussian::Message& message) const {
@@ -202,7 +248,7 @@ void StaticGaussianEstimator::new_incarnation() {
 void StaticGaussianEstimator::forget() {
   new_incarnation();
   for (std::vector<TrackedBelief>* beliefs : {&own_, &unsent_}) {
-    for (TrackedBelief& tracked : *beliefs) tracked = unknown(options_.dimension);
+    for (TrackedBelief& tracked : *beliefs) tracked = unknown();
   }
   for (Neighbour& neighbour : neighbours_) neighbour = make_neighbour(neighbour.id);
 }

@@ -91,11 +91,11 @@ bool TrajectoryEstimator::usable(const Neighbour& from, const Message& message) 
   return true;
 }
 
-void TrajectoryEstimator::heard(AgentId from, const Message& message) {
+bool TrajectoryEstimator::heard(AgentId from, const Message& message) {
   Neighbour& sender = neighbour(from);
   if (!usable(sender, message)) {
     ++counts_.refused;
-    return;
+    return false;
   }
   sender.heard = true;
   sender.incarnation = message.incarnation;
@@ -103,7 +103,7 @@ void TrajectoryEstimator::heard(AgentId from, const Message& message) {
   current_ = false;
   if (options_.exchange == TrajectoryExchange::everything) {
     for (const Entry& entry : message.entries) measured(entry.stamp, entry.information);
-    return;
+    return true;
   }
   const Belief nothing = Belief::unknown(dimension());
   auto entry = message.entries.begin();
@@ -113,6 +113,7 @@ void TrajectoryEstimator::heard(AgentId from, const Message& message) {
     const bool told = entry != message.entries.end() && entry->stamp == stamp;
     replace(sender, stamp, told ? entry->information : nothing);
   }
+  return true;
 }
 
 void TrajectoryEstimator::replace(Neighbour& from, Stamp stamp, const Belief& information) {
@@ -137,6 +138,16 @@ const gaussian::Trajectory& TrajectoryEstimator::belief() {
     trajectory_.update(static_cast<int>(stamp - first_), all_of(stamp, no_agent));
   }
   return trajectory_;
+}
+
+Belief TrajectoryEstimator::present() {
+  Belief belief = base_;
+  belief += all_of(first_, no_agent);
+  for (Stamp stamp = first_ + 1; stamp <= last_; ++stamp) {
+    belief = gaussian::predict(belief, options_.step);
+    belief += all_of(stamp, no_agent);
+  }
+  return belief;
 }
 
 void TrajectoryEstimator::forget(Stamp now) {

@@ -42,6 +42,7 @@ class TrajectoryEstimator {
   int dimension() const { return static_cast<int>(options_.step.A.rows()); }
   Stamp first() const { return first_; }
   Stamp last() const { return last_; }
+  int steps_max() const { return options_.steps_max; }
 
   /// The window reaches to `now` ≥ last() from here on.
   void advance(Stamp now);
@@ -65,12 +66,16 @@ class TrajectoryEstimator {
   void speak(AgentId neighbour, Message& message);
 
   /// Takes a message in. Older than the last one, of another dimension, out of order or about the
-  /// future: it is refused and counted.
-  void heard(AgentId from, const Message& message);
+  /// future: it is refused and counted, and the answer is false.
+  bool heard(AgentId from, const Message& message);
 
   /// The belief over the window, first() … last(). Valid until anything is called that is not
   /// const.
   const gaussian::Trajectory& belief();
+
+  /// The belief about the state at last() alone: what a filter over all of it says, also while
+  /// that does not determine it.
+  gaussian::Belief present();
 
   /// Comes back from a reboot that lost the memory, at stamp `now`.
   void forget(Stamp now);

@@ -7,14 +7,19 @@
 namespace hearsay {
 
 PositionSensor::PositionSensor(const Options& options) : options_(options) {
-  const double a = options.sigma_along_m * options.sigma_along_m;
-  const double c = options.sigma_across_m * options.sigma_across_m;
-  if (a != c) {
-    const double dx = options.target_m[0] - options.sensor_m[0];
-    const double dy = options.target_m[1] - options.sensor_m[1];
-    const double distance = std::sqrt(dx * dx + dy * dy);
-    require(distance > 0.0, "a sensor with a line of sight stands on its target");
-    along_ = {dx / distance, dy / distance};
+  require(!has_direction() || options.sensor_m != options.target_m,
+          "a sensor with a line of sight stands on its target");
+  aim();
+}
+
+void PositionSensor::aim() {
+  const double a = options_.sigma_along_m * options_.sigma_along_m;
+  const double c = options_.sigma_across_m * options_.sigma_across_m;
+  const double distance = distance_m();
+  along_ = {1.0, 0.0};
+  if (has_direction() && distance > 0.0) {
+    along_ = {(options_.target_m[0] - options_.sensor_m[0]) / distance,
+              (options_.target_m[1] - options_.sensor_m[1]) / distance};
   }
   // S = a·ddᵀ + c·(I − ddᵀ) along the unit vector d; its inverse has 1/a and 1/c in their place.
   const auto fill = [this](double along, double across) {
@@ -29,11 +34,20 @@ PositionSensor::PositionSensor(const Options& options) : options_(options) {
   information_ = fill(1.0 / a, 1.0 / c);
 }
 
-PositionSensor PositionSensor::moved_to(const std::array<double, 2>& sensor_m) const {
-  Options options = options_;
-  options.sensor_m = sensor_m;
-  if (sensor_m == options.target_m) options.sensor_m[0] -= 1.0;
-  return PositionSensor(options);
+void PositionSensor::move_to(const std::array<double, 2>& sensor_m) {
+  options_.sensor_m = sensor_m;
+  if (has_direction()) aim();
+}
+
+void PositionSensor::look_towards(const std::array<double, 2>& target_m) {
+  options_.target_m = target_m;
+  if (has_direction()) aim();
+}
+
+double PositionSensor::distance_m() const {
+  const double dx = options_.target_m[0] - options_.sensor_m[0];
+  const double dy = options_.target_m[1] - options_.sensor_m[1];
+  return std::sqrt(dx * dx + dy * dy);
 }
 
 gaussian::Belief PositionSensor::measure(Stream& draws) const {

@@ -26,14 +26,19 @@ class PositionSensor {
   /// True if the noise depends on the line of sight.
   bool has_direction() const { return options_.sigma_along_m != options_.sigma_across_m; }
 
-  /// The same sensor standing elsewhere. Just on the target, where there is no line of sight, it
-  /// looks along x.
-  PositionSensor moved_to(const std::array<double, 2>& sensor_m) const;
+  // From elsewhere, or at something that is elsewhere now. Just on the target, where there is no
+  // line of sight, it looks along x.
+  void move_to(const std::array<double, 2>& sensor_m);
+  void look_towards(const std::array<double, 2>& target_m);
+
+  /// To the target.
+  double distance_m() const;
 
   /// S (2×2), m².
   const gaussian::Matrix& covariance() const { return S_; }
 
  private:
+  void aim();
   Options options_;
   std::array<double, 2> along_{1.0, 0.0};  // unit vector of the line of sight
   gaussian::Matrix S_;

@@ -147,6 +147,16 @@ Belief& Belief::operator*=(double scalar) {
   return *this;
 }
 
+Belief lifted(const Belief& information, int n) {
+  const int known = information.dimension();
+  require(known <= n, "lifted: the information has more dimensions than the state");
+  if (known == n) return information;
+  Belief belief = Belief::unknown(n);
+  belief.omega.topLeftCorner(known, known) = information.omega;
+  belief.xi.head(known) = information.xi;
+  return belief;
+}
+
 Belief measurement_information(const Matrix& M, const Matrix& S, const Vector& z) {
   require(M.rows() == z.size() && S.rows() == z.size() && S.cols() == z.size() && M.cols() >= 1,
           "measurement: the shapes of M (m×n), S (m×m) and z (m) disagree");

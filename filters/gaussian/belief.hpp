@@ -45,6 +45,10 @@ struct Belief {
   Belief& operator*=(double factor);
 };
 
+/// Information about the first numbers of a state as information about all n of them.
+/// @throws BrokenInvariant if it has more than n.
+Belief lifted(const Belief& information, int n);
+
 /// A measurement z = Mx + v, v ~ N(0, S), as information: Ω = MᵀS⁻¹M, ξ = MᵀS⁻¹z (eq. 3.34–3.35).
 /// M is m×n, S m×m positive definite, z m. @throws BrokenInvariant if S is not.
 Belief measurement_information(const Matrix& M, const Matrix& S, const Vector& z);

@@ -7,6 +7,9 @@
 //   struct GaussianMessage { unsigned long incarnation; unsigned long count;
 //                            sequence<GaussianBelief> beliefs; };
 //
+//   struct StampedGaussianMessage { long long stamp_ns; …as GaussianMessage };  // of a moving
+//   state
+//
 // (incarnation, count) orders a sender's messages across reboots. Four bytes of encapsulation
 // header, then natural alignment counted from the end of the header, sequence lengths as uint32.
 #pragma once
@@ -30,6 +33,11 @@ struct Message {
   std::uint32_t count = 0;
   std::vector<BeliefEntry> beliefs;
 };
+/// The beliefs are about states as they were at `stamp`.
+struct StampedMessage {
+  std::int64_t stamp = 0;
+  Message message;
+};
 
 /// Exact number of bytes of a message of `beliefs` beliefs of dimension n each.
 std::size_t encoded_size(std::size_t beliefs, int n);
@@ -41,5 +49,9 @@ void encode(const Message& message, std::vector<std::byte>& out);
 /// one well-formed message: wrong header, truncated, trailing bytes, a dimension of 0 or beyond
 /// dimension_max, lengths that disagree. Numbers are taken as they are (also NaN).
 bool decode(std::span<const std::byte> bytes, Message& out);
+
+// The same for a message with a stamp, which takes 8 bytes more.
+void encode(const StampedMessage& message, std::vector<std::byte>& out);
+bool decode(std::span<const std::byte> bytes, StampedMessage& out);
 
 }  // namespace hearsay::gaussian

@@ -7,7 +7,8 @@ namespace hearsay::gaussian {
 namespace {
 
 constexpr std::string_view exact_ledger =
-    "exact for static linear-Gaussian problems while sending does not depend on measured values";
+    "exact for linear-Gaussian problems, static or moving by a known model, while sending does not "
+    "depend on measured values; of trajectories multiplicity alone";
 
 constexpr std::array<RuleInfo, 13> table = {{
     {Rule::none, "none", Sends::nothing, Memory::nothing,
@@ -31,7 +32,8 @@ constexpr std::array<RuleInfo, 13> table = {{
     {Rule::channel_robust, "channel-robust", Sends::belief_less_heard, Memory::last_heard,
      "a tree; messages may be lost, doubled, reordered or cross",
      "exact there, up to messages under way; loops count twice and more; what a neighbour said "
-     "before it lost its memory is given back, not counted twice",
+     "before it lost its memory is given back, not counted twice; filters of moving states lose "
+     "information, up to an indefinite belief, trajectories do not",
      exact_ledger, "cumulative form of Merino 2007, Alg. 3.4"},
     {Rule::ci_det, "ci-det", Sends::belief, Memory::nothing,
      "both beliefs are conservative; nothing about what they share",

@@ -1,6 +1,7 @@
 #include "filters/gaussian/trajectory.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "filters/gaussian/symmetric.hpp"
 #include "sim/kernel/error.hpp"
@@ -38,6 +39,18 @@ void Trajectory::augment(Stamp stamp, const Transition& transition) {
   block(k) += gram(past);
   block_next(k) += past.transpose().lazyProduct(now);
   block(k + 1) += gram(now);
+}
+
+void Trajectory::append(Stamp stamp, const Matrix& before, const Belief& own) {
+  require(stamp > stamps_.back(), "Trajectory: a stamp must be later than those before");
+  require(own.dimension() == n_ && before.rows() == n_ && before.cols() == n_,
+          "Trajectory: dimensions differ");
+  const int k = steps();
+  stamps_.push_back(stamp);
+  numbers_.resize(numbers_.size() + stride(), 0.0);
+  block_next(k - 1) = before;
+  block(k) = own.omega;
+  part(k) = own.xi;
 }
 
 void Trajectory::update(int k, const Belief& information) {
@@ -123,6 +136,37 @@ void Trajectory::intersect(double omega, const Trajectory& other) {
   for (std::size_t i = 0; i < numbers_.size(); ++i) {
     numbers_[i] = omega * numbers_[i] + rest * other.numbers_[i];
   }
+}
+
+Belief present(const Trajectory& trajectory) {
+  Trajectory left = trajectory;
+  while (left.steps() > 1) {
+    if (!left.marginalise(0)) return Belief::unknown(trajectory.dimension());
+  }
+  const Scaled before = scale(trajectory.omega(trajectory.steps() - 1));
+  Matrix omega = left.omega(0), xi = left.xi(0);
+  if (before.definiteness == Definiteness::overflow || !omega.allFinite()) return {omega, xi};
+  // In the scale of the block before, directions that are known are far from zero.
+  scale_rows(omega, before.factor);
+  omega.transposeInPlace();
+  scale_rows(omega, before.factor);
+  scale_rows(xi, before.factor);
+  const Eigenpairs pairs = eigenpairs(omega);
+  Matrix known = Matrix::Zero(omega.rows(), omega.cols());
+  for (Eigen::Index j = 0; j < omega.cols(); ++j) {
+    if (std::fabs(pairs.values(j)) < 1e-11) continue;
+    known += pairs.vectors.col(j) * pairs.vectors.col(j).transpose();
+  }
+  if (known.isIdentity(1e-14)) return {left.omega(0), left.xi(0)};
+  const Matrix half = known.lazyProduct(omega);
+  omega = half.lazyProduct(known);
+  xi = known.lazyProduct(xi).eval();
+  const Vector back = before.factor.cwiseInverse();
+  scale_rows(omega, back);
+  omega.transposeInPlace();
+  scale_rows(omega, back);
+  scale_rows(xi, back);
+  return {0.5 * (omega + omega.transpose()), Vector(xi)};
 }
 
 }  // namespace hearsay::gaussian

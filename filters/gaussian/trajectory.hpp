@@ -53,6 +53,10 @@ class Trajectory {
   /// not positive definite.
   void augment(Stamp stamp, const Transition& transition);
 
+  /// Adds a step behind the last one with blocks that are known, as those of a message: `before` is
+  /// Ω_k−1,k (n×n), `own` are Ω_k,k and ξ_k. @throws BrokenInvariant as above.
+  void append(Stamp stamp, const Matrix& before, const Belief& own);
+
   /// Adds independent information about the state at step k: a measurement (eq. 3.29–3.30), or what
   /// somebody else measured.
   void update(int k, const Belief& information);
@@ -89,5 +93,10 @@ class Trajectory {
   // A row a step: Ω_k,k and Ω_k,k+1 by columns, ξ_k. What follows the last step is zero.
   std::vector<double> numbers_;
 };
+
+/// The belief about the state at the last stamp: all others marginalised. What is left of a
+/// direction below 1e-11 of what the last block says of it is rounding, and counts as unknown; so
+/// does everything where nothing can be concluded (marginalise() is false).
+Belief present(const Trajectory& trajectory);
 
 }  // namespace hearsay::gaussian

@@ -53,7 +53,7 @@ Transition white_noise_acceleration(int axes, double dt_s, double q) {
 
 // With Ψ = GGᵀ, (I + ΨR)⁻¹Ψ = G(I + GᵀRG)⁻¹Gᵀ: what is inverted is never worse than the identity,
 // and nothing is subtracted.
-Belief predict(const Belief& belief, const Transition& transition) {
+Prediction predict_with_gain(const Belief& belief, const Transition& transition) {
   const Eigen::Index n = belief.dimension();
   const Matrix& R = transition.R;
   require(transition.A.rows() == n && transition.A.cols() == n && R.rows() == n && R.cols() == n,
@@ -61,10 +61,10 @@ Belief predict(const Belief& belief, const Transition& transition) {
   const Matrix At = transition.A.transpose();
   const Decomposition lu(At);
   require(std::fabs(lu.determinant()) > 0.0, "predict: A is not invertible");
-  const Matrix moved = lu.solve(Matrix(belief.xi));  // A⁻ᵀξ
   const Matrix identity = Matrix::Identity(n, n);
+  const Matrix back = lu.solve(identity);  // A⁻ᵀ
   if (const auto omega_root = root(belief.omega)) {
-    const Matrix G = lu.solve(*omega_root);  // A⁻ᵀG_Ω
+    const Matrix G = product(back, *omega_root);  // A⁻ᵀG_Ω
     const Matrix RG = product(R, G);
     const Scaled middle = scale(identity + product(G.transpose(), RG));
     if (middle.cholesky.size() > 0) {
@@ -72,18 +72,24 @@ Belief predict(const Belief& belief, const Transition& transition) {
       Matrix W = G.transpose();
       scale_rows(W, middle.factor);
       solve_lower(middle.cholesky, W);
-      Matrix w = product(RG.transpose(), moved);
+      Matrix w = product(RG.transpose(), back);
       scale_rows(w, middle.factor);
       solve_lower(middle.cholesky, w);
-      return {gram(W), moved - product(W.transpose(), w)};
+      const Matrix F = back - product(W.transpose(), w);
+      return {{gram(W), F.lazyProduct(belief.xi)}, F};
     }
   }
   // A belief that a faulty rule made indefinite: what its user would compute.
-  const Matrix half = lu.solve(belief.omega);             // A⁻ᵀΩ
-  const Matrix psi = lu.solve(Matrix(half.transpose()));  // A⁻ᵀΩA⁻¹
+  const Matrix half = product(back, belief.omega);             // A⁻ᵀΩ
+  const Matrix psi = product(half, Matrix(back.transpose()));  // A⁻ᵀΩA⁻¹
   const Decomposition general(identity + product(psi, R));
   const Matrix omega = general.solve(psi);
-  return {0.5 * (omega + omega.transpose()), Vector(general.solve(moved))};
+  const Matrix F = general.solve(back);
+  return {{0.5 * (omega + omega.transpose()), F.lazyProduct(belief.xi)}, F};
+}
+
+Belief predict(const Belief& belief, const Transition& transition) {
+  return predict_with_gain(belief, transition).belief;
 }
 
 }  // namespace hearsay::gaussian

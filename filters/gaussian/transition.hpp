@@ -22,4 +22,11 @@ Transition white_noise_acceleration(int axes, double dt_s, double q);
 /// is legal for a singular Ω. @throws BrokenInvariant if dimensions differ or A is not invertible.
 Belief predict(const Belief& belief, const Transition& transition);
 
+/// The same, and the F (n×n) of ξ' = Fξ.
+struct Prediction {
+  Belief belief;
+  Matrix F;
+};
+Prediction predict_with_gain(const Belief& belief, const Transition& transition);
+
 }  // namespace hearsay::gaussian

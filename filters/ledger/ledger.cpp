@@ -182,7 +182,9 @@ Ledger& Ledger::operator=(const Ledger& other) {
   if (this != &other) {
     copy_with_room(other.weights_, weights_);
     copy_with_room(other.matrices_, matrices_);
+    copy_with_room(other.drift_, drift_);
     dimension_ = other.dimension_;
+    moves_ = other.moves_;
     copy_with_room(other.reach_, reach_);
   }
   return *this;
@@ -203,7 +205,7 @@ void Ledger::measured(std::size_t index) {
 
 void Ledger::combine(double a, double b, const Ledger& received, double c, const Ledger* common) {
   require(common != this, "Ledger::combine: a ledger cannot be its own common memory");
-  require(dimension_ == 0 && received.dimension_ == 0,
+  require(moves_ || (dimension_ == 0 && received.dimension_ == 0),
           "Ledger::combine: a rule by direction and another cannot be mixed");
   const std::size_t common_size = common != nullptr && c != 0.0 ? common->weights_.size() : 0;
   const std::size_t size = std::max({weights_.size(), received.weights_.size(), common_size});
@@ -221,13 +223,26 @@ void Ledger::combine(double a, double b, const Ledger& received, double c, const
   for (std::size_t k = three; k < common_size; ++k) own[k] = a * own[k] - c * known[k];
   for (std::size_t k = std::max(heard_size, common_size); k < size; ++k) own[k] = a * own[k];
   unite(reach_.data(), received.reach_.data(), received.reach_.size());
+  if (moves_) combine_moving(a, b, received, c, common_size > 0 ? common : nullptr);
+}
+
+void Ledger::replace(const Ledger& other, std::span<const std::uint8_t> where) {
+  require(dimension_ == 0 && other.dimension_ == 0, "Ledger::replace: not with matrices");
+  const std::size_t size = std::max(weights_.size(), other.weights_.size());
+  weights_.resize(size, 0.0);
+  reach_.resize(size, 0);
+  for (std::size_t k = 0; k < std::min(size, where.size()); ++k) {
+    if (where[k] != 0) weights_[k] = k < other.weights_.size() ? other.weights_[k] : 0.0;
+  }
+  unite(reach_.data(), other.reach_.data(), other.reach_.size());
 }
 
 void Ledger::clear() {
   weights_.clear();
   matrices_.clear();
+  drift_.clear();
   reach_.clear();
-  dimension_ = 0;
+  if (!moves_) dimension_ = 0;
 }
 
 Multiplicity multiplicity(const Ledger& ledger) {
@@ -267,9 +282,10 @@ std::optional<Matrix> true_covariance(const Matrix& omega, const Ledger& ledger,
   int exponent = 0;
   std::frexp(largest, &exponent);
   if (!ledger.matrices().empty()) exponent = 0;
-  const Matrix square = ledger.matrices().empty()
-                            ? book.weighted_square(ledger.weights(), std::ldexp(1.0, -exponent))
-                            : book.weighted_square_of(ledger.matrices());
+  Matrix square = ledger.matrices().empty()
+                      ? book.weighted_square(ledger.weights(), std::ldexp(1.0, -exponent))
+                      : book.weighted_square_of(ledger.matrices());
+  if (ledger.moves()) square += book.motion_square_of(ledger.drift());
   const Matrix middle = both_sides(scaled.factor, square, exponent);
   const Matrix half = gaussian::solve(scaled, middle).transpose();
   Matrix p = gaussian::solve(scaled, half);

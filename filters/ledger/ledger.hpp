@@ -9,6 +9,14 @@
 // by direction give each measurement a matrix W_k instead (n×n, ξ = Σ W_kM_kᵀS_k⁻¹z_k), and
 // P_true = Ω⁻¹ (Σ W_k M_kᵀS_k⁻¹M_k W_kᵀ) Ω⁻¹; its weight is then tr W_k/n.
 //
+// Where the state moves, x' = Ax + w with w ~ N(0, R), prediction weakens what is known, and what
+// was measured at different times has the noise of the motion in common. Then each measurement has
+// a matrix and a scalar: the scalar is its multiplicity, combined by the rules alone; the matrix is
+// what prediction left of it. And each step s of the motion is one more source, with a matrix H_s:
+//     ξ − Ωx = Σ W_k M_kᵀS_k⁻¹v_k + Σ H_s w_s,
+//     P_true = Ω⁻¹ (Σ W_k M_kᵀS_k⁻¹M_k W_kᵀ + Σ H_s R H_sᵀ) Ω⁻¹,
+// exact, correlations by the common motion included, while no gain depends on measured values.
+//
 // Beside the weights it carries, independently of them, the set of measurements that can have
 // travelled here at all (`reach`).
 #pragma once
@@ -39,14 +47,22 @@ class MeasurementBook {
   gaussian::Belief sum_over(std::span<const std::uint8_t> chosen) const;
   /// Σ W_k ξ_k, or of all Ω_k, with W_k n×n by columns: what a ledger with matrices says.
   gaussian::Belief weighted_sum_of(std::span<const double> matrices) const;
+  /// The state moves, with this R (n×n) in each step; a matrix that is not finite: nobody knows
+  /// how.
+  void set_motion(const gaussian::Matrix& R) { motion_ = R; }
+  /// R; empty (0×0) where the state stands still.
+  const gaussian::Matrix& motion() const { return motion_; }
   /// Σ W_k M_kᵀS_k⁻¹M_k W_kᵀ (n×n).
   gaussian::Matrix weighted_square_of(std::span<const double> matrices) const;
+  /// Σ H_s R H_sᵀ (n×n), with H_s n×n by columns.
+  gaussian::Matrix motion_square_of(std::span<const double> drift) const;
   /// Σ (scale·w_k)² M_kᵀS_k⁻¹M_k (n×n). A scale keeps the squares of huge weights finite.
   gaussian::Matrix weighted_square(std::span<const double> weights, double scale = 1.0) const;
 
  private:
   int dimension_;
   std::size_t count_ = 0;
+  gaussian::Matrix motion_;
   std::vector<double> information_;  // upper triangle of Ω by rows, then ξ, for each measurement
 };
 
@@ -54,6 +70,8 @@ class MeasurementBook {
 class Ledger {
  public:
   Ledger() = default;
+  /// Of a belief about a state of dimension n that moves.
+  static Ledger moving(int n);
   Ledger(const Ledger&) = default;
   Ledger(Ledger&&) = default;
   Ledger& operator=(Ledger&&) = default;
@@ -69,20 +87,32 @@ class Ledger {
   void combine(double a, double b, const Ledger& received, double c, const Ledger* common);
   /// this = G_a·this + G_b·received, weight by weight (n×n); reach as above.
   void combine(const gaussian::Matrix& own, const gaussian::Matrix& heard, const Ledger& received);
+  /// The belief was predicted over step `step` of the motion, counted from 0, and is Ω' = `omega`
+  /// (n×n) now: W_k ← F W_k, H_s ← F H_s with F (n×n) of ξ' = Fξ, H_step ← −Ω'. Only for a moving
+  /// state.
+  void predict(const gaussian::Matrix& F, const gaussian::Matrix& omega, std::size_t step);
+  /// w_k ← other.w_k where where[k] ≠ 0; reach = union of both. Not with matrices.
+  void replace(const Ledger& other, std::span<const std::uint8_t> where);
   void clear();
 
   std::span<const double> weights() const { return weights_; }
   /// W_k by columns, n² numbers for each measurement; empty as long as W_k = w_k·I for all.
   std::span<const double> matrices() const { return matrices_; }
+  /// H_s by columns, n² numbers for each step of the motion.
+  std::span<const double> drift() const { return drift_; }
+  bool moves() const { return moves_; }
   /// 1 where measurement k can have contributed to this belief, else 0.
   std::span<const std::uint8_t> reach() const { return reach_; }
 
  private:
   void spread(int n);
+  void combine_moving(double a, double b, const Ledger& received, double c, const Ledger* common);
   std::vector<double> weights_;
   std::vector<double> matrices_;
+  std::vector<double> drift_;
   std::vector<std::uint8_t> reach_;
   int dimension_ = 0;  // of the matrices; 0 without
+  bool moves_ = false;
 };
 
 /// Over the measurements with |w| > 1e-12.

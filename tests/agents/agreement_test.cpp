@@ -8,6 +8,7 @@
 #include <limits>
 #include <vector>
 
+#include "agents/estimators/static_gaussian.hpp"
 #include "agents/witness.hpp"
 #include "sim/kernel/random.hpp"
 

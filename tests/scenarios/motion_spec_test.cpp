@@ -135,13 +135,13 @@ TEST_F(MotionSpecs, KeysOfOtherKindsAreRefused) {
 TEST_F(MotionSpecs, ValuesOutOfRangeAreRefused) {
   EXPECT_EQ(error_with("kind = \"fly\""),
             "s.toml:3: agents[0].motion.kind = \"fly\": unknown; allowed: hover, waypoints, "
-            "lawn-mower, random-waypoint, gauss-markov, track");
+            "lawn-mower, random-waypoint, gauss-markov, track, white-noise-acceleration");
   EXPECT_EQ(error_with("speed = 1"),
             "s.toml:3: unknown key 'speed' in [agents[0].motion]; allowed: kind, altitude_m, "
             "points_m, speed_m_per_s, pause_s, repeat, area_m, lane_spacing_m, speed_min_m_per_s, "
             "speed_max_m_per_s, pause_min_s, pause_max_s, speed_mean_m_per_s, "
             "speed_sigma_m_per_s, direction_mean_rad, direction_sigma_rad, alpha, "
-            "update_period_s, file");
+            "update_period_s, velocity_m_per_s, acceleration_psd_m2_per_s3, file");
   EXPECT_EQ(error_with("kind = \"waypoints\", speed_m_per_s = 0"),
             "s.toml:3: agents[0].motion.speed_m_per_s = 0: must be greater than 0");
   EXPECT_EQ(error_with(std::string(wander) + ", pause_max_s = -1"),

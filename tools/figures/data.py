@@ -341,6 +341,11 @@ class Selection:
             raise UserError(f"{self._database.file}: no agent {name!r} in these runs")
         return found[0][0]
 
+    def agent_names(self):
+        """{number: name} of all agents."""
+        return dict(self._database.rows(
+            "SELECT id, name FROM agent WHERE run = (SELECT MIN(run) FROM temp.chosen)"))
+
     def scalar_of(self, name, agent):
         """array[cell, repetition] of a scalar of one agent, NaN where it is undefined.
         @raises UserError if it was not recorded."""

@@ -1,0 +1,114 @@
+// What an estimator agent asks of its estimator, whatever a belief is; and what goes beside it: the
+// ledger, out of band.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "filters/gaussian/belief.hpp"
+#include "filters/gaussian/codec.hpp"
+#include "filters/gaussian/trajectory_codec.hpp"
+#include "filters/gaussian/transition.hpp"
+#include "filters/ledger/ledger.hpp"
+#include "net/packet.hpp"
+#include "sim/kernel/time.hpp"
+
+namespace hearsay {
+
+/// How all subjects of a run are thought to move: from the instant k·period, stamp k, to the next.
+/// Moving states are measured and believed at stamps alone.
+struct MotionModel {
+  gaussian::Transition step;  ///< n×n
+  Duration period;            ///< > 0
+
+  std::int64_t stamp_at(Time time) const { return time.nanoseconds() / period.nanoseconds(); }
+};
+
+/// A belief and its ledger. The ledger stays empty where ledgers are off.
+struct TrackedBelief {
+  gaussian::Belief belief;
+  Ledger ledger;
+};
+
+/// The ledgers of the beliefs in one message, by position; rides beside the packet.
+class LedgerRider final : public Rider {
+ public:
+  std::vector<Ledger> ledgers;
+
+ private:
+  friend class LedgerPool;
+  explicit LedgerRider(std::vector<LedgerRider*>& home) : home_(home) {}
+  void recycle() override { home_.push_back(this); }
+  std::vector<LedgerRider*>& home_;
+};
+
+/// Riders of one run, reused. Must outlive every packet that carries one.
+class LedgerPool {
+ public:
+  LedgerPool() = default;
+  LedgerPool(const LedgerPool&) = delete;
+  LedgerPool& operator=(const LedgerPool&) = delete;
+  RiderPtr make(LedgerRider*& rider);
+
+ private:
+  std::vector<std::unique_ptr<LedgerRider>> riders_;
+  std::vector<LedgerRider*> free_;
+};
+
+/// What estimators need only while they speak or hear. One for all agents of a run, so that a
+/// message to the next agent finds it in the cache.
+struct EstimatorWorkspace {
+  gaussian::StampedMessage outgoing, incoming;
+  gaussian::TrajectoryMessage outgoing_trajectories, incoming_trajectories;
+  std::vector<std::byte> bytes;
+  /// Not for beliefs, but for ledgers of trajectories: the stamp of every measurement, by subject.
+  std::vector<std::vector<std::int64_t>> measured_at;
+};
+
+struct EstimatorCounts {
+  std::uint64_t measurements = 0;
+  std::uint64_t fusions = 0;
+  std::uint64_t skipped = 0;   ///< beliefs the rule could not use
+  std::uint64_t refused = 0;   ///< messages malformed, from a stranger or not newer
+  std::uint64_t late = 0;      ///< news of a stamp that is gone from the window
+  double fusion_gain_max = 0;  ///< largest 1 − σ/min(σ own, σ heard) over fusions
+};
+
+/// It knows no clock and no radio: measurements and messages in, beliefs and messages out.
+class Estimator {
+ public:
+  virtual ~Estimator() = default;
+
+  /// From here on it is stamp `now`, not before the last one. Nothing where states stand still.
+  virtual void advance(std::int64_t now) = 0;
+
+  /// Uses a measurement's information about the state as it is now (eq. 3.34–3.35). `measurement`
+  /// is its index in the subject's MeasurementBook.
+  virtual void measured(int subject, const gaussian::Belief& information,
+                        std::size_t measurement) = 0;
+
+  struct Speech {
+    std::span<const std::byte> bytes;  ///< valid until the next call of any with this workspace
+    RiderPtr rider;
+  };
+  /// The message to `neighbour`, or to all of them for no_agent (rules that send one broadcast).
+  /// A stranger, if there may be any, is remembered from now on.
+  /// Subjects nothing is known about are left out; an empty speech says nothing at all.
+  virtual Speech speech(AgentId neighbour) = 0;
+  /// Tells that the last speech to `neighbour` (no_agent: to all) was handed over to the radio.
+  virtual void sent(AgentId neighbour) = 0;
+
+  /// Takes in a message. Malformed or outdated ones are refused and counted.
+  virtual void heard(AgentId from, std::span<const std::byte> bytes, const Rider* rider) = 0;
+
+  /// Comes back from a reboot that lost the memory: it knows nothing and remembers nobody's words.
+  virtual void forget() = 0;
+
+  /// What it believes about a subject now; valid until anything else is called.
+  virtual const TrackedBelief& tracked(int subject) const = 0;
+  virtual const EstimatorCounts& counts() const = 0;
+};
+
+}  // namespace hearsay

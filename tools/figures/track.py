@@ -1,0 +1,154 @@
+#!/usr/bin/python3
+"""Vehicles that follow an object by what they tell each other: where each believes it is in one run, then true
+error and claimed σ of each over time, a row a rule.
+
+    track.py DATABASE OUTPUT [--rules A;B;…] [--repetition 1] [--seen A:0-36,B:42-86] [--study S]
+
+`seen` says when an agent sees the object. OUTPUT ends with .png, .svg or .pdf. Any other axis of the study is
+chosen by an option of its name.
+"""
+
+import argparse
+
+import numpy as np
+
+import data
+import panels
+import style
+
+SERIES = ("rms_error_m", "claimed_sigma_m", "x_m", "y_m", "x_error_m", "y_error_m")
+DASHED = (0, (3.2, 1.4))
+
+
+class Agent:
+    """A series of one agent alone."""
+
+    def __init__(self, series, agent):
+        self._series = series
+        self._chosen = series.agents == agent
+
+    def of(self, array, agents):
+        if agents == "central":
+            return self._series.of(array, agents)
+        return getattr(self._series, array)[..., self._chosen]
+
+
+def seen_spans(text):
+    """"A:0-36,B:42-86" as {"A": [(0, 36)], "B": [(42, 86)]}."""
+    spans = {}
+    try:
+        for part in filter(None, text.split(",")):
+            name, span = part.split(":")
+            start, end = map(float, span.split("-"))
+            spans.setdefault(name, []).append((start, end))
+    except ValueError:
+        raise data.UserError(f"--seen {text}: expected agents and spans in seconds such as A:0-36,B:42-86")
+    return spans
+
+
+def one_run(series, cell, repetition, agent):
+    """Values of one agent and the first subject in one repetition."""
+    of_agent = series.agents == agent
+    total, count = (a[cell, repetition][..., of_agent][..., 0] for a in (series.total, series.count))
+    return np.where(count > 0, total, np.nan)
+
+
+def map_panel(axes, chosen, series, cell, repetition, agents, colors):
+    x, y = (one_run(series[name], cell, repetition, data.CENTRAL) for name in ("x_m", "y_m"))
+    ex, ey = (one_run(series[name], cell, repetition, data.CENTRAL) for name in ("x_error_m", "y_error_m"))
+    axes.plot(x - ex, y - ey, color=style.BLACK, lw=2.6, alpha=0.35, solid_capstyle="round", zorder=2)
+    for agent in agents:
+        path = [one_run(series[name], cell, repetition, agent) for name in ("x_m", "y_m")]
+        axes.plot(*path, color=colors[agent], lw=1.1, marker=".", ms=2.2, zorder=3)
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.set_ylabel("y [m]", labelpad=1)
+
+
+def time_panel(axes, series, cell, agent, color, spans):
+    t_s = series["rms_error_m"].t_s
+    own = {name: Agent(series[name], agent) for name in ("rms_error_m", "claimed_sigma_m")}
+    error = panels.rms(own["rms_error_m"], cell, interval=True)
+    claimed = panels.rms(own["claimed_sigma_m"], cell)
+    central = panels.rms(series["claimed_sigma_m"], cell, "central")
+    for start, end in spans:
+        axes.axvspan(start, end, color="#efe6cf", lw=0.0, zorder=0.4)
+    panels.shade_gap(axes, t_s, claimed, error, color)
+    panels.draw(axes, t_s, central, style.BLACK, "-", width=1.0, zorder=2)
+    axes.fill_between(t_s, error.low, error.high, color=color, alpha=0.45, lw=0.0, zorder=2.5)
+    panels.draw(axes, t_s, error, color, "-", width=1.6)
+    panels.draw(axes, t_s, claimed, color, DASHED, width=1.8, zorder=3.5)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("--rules", default="", help="labels of the axis rule, with ; between them")
+    parser.add_argument("--repetition", type=int, default=1, help="the run on the maps, from 1")
+    parser.add_argument("--seen", default="", help="when an agent sees the object")
+    arguments, chosen = data.parse(parser)
+    chosen.require_axes("rule")
+    spans = seen_spans(arguments.seen)
+    rules = [r for r in arguments.rules.split(";") if r] or chosen.labels("rule")
+    series = chosen.series(SERIES)
+    agents = [int(a) for a in series["rms_error_m"].agents if a >= 0]
+    names = chosen.agent_names()
+    colors = dict(zip(agents, (style.BLUE, style.ORANGE, style.GREEN, style.PURPLE, style.SKY)))
+    rows, columns = len(rules), 1 + len(agents)
+    figure = style.new_figure(3.0 * columns + 0.6, 2.2 * rows + 1.5)
+    height = figure.get_figheight()
+    grid = figure.add_gridspec(
+        rows, columns, wspace=0.2, hspace=0.22, left=0.07, right=0.99, top=1 - 0.62 / height,
+        bottom=1.32 / height, width_ratios=[1.35] + [1.0] * len(agents),
+    )
+    cells = [chosen.cell(rule=rule) for rule in rules]
+    for rule, cell in zip(rules, cells):
+        if cell is None:
+            raise data.UserError(f"--rules: no cell with rule {rule!r}; there are: "
+                                 + "; ".join(chosen.labels("rule")))
+    values = panels.finite(
+        [panels.rms(Agent(series[name], a), cell).value
+         for name in ("rms_error_m", "claimed_sigma_m") for cell in cells for a in agents], "error")
+    limits = 0.7 * np.nanmin(values[values > 0]), 1.4 * np.nanmax(values)
+    for i, (rule, cell) in enumerate(zip(rules, cells)):
+        axes = figure.add_subplot(grid[i, 0])
+        map_panel(axes, chosen, series, cell, arguments.repetition - 1, agents, colors)
+        axes.set_title(rule, loc="left", pad=4, fontsize=9.5, fontweight="bold")
+        if i == rows - 1:
+            axes.set_xlabel("x [m]", labelpad=1.5)
+        for k, agent in enumerate(agents):
+            axes = figure.add_subplot(grid[i, 1 + k])
+            style.time_axis(axes, series["rms_error_m"].t_s)
+            style.log_axis(axes, *limits)
+            time_panel(axes, series, cell, agent, colors[agent], spans.get(names[agent], []))
+            axes.tick_params(labelleft=k == 0, labelbottom=i == rows - 1)
+            if i == 0:
+                axes.set_title(names[agent], color=colors[agent], fontweight="bold", loc="left", pad=4)
+            if i == rows - 1:
+                axes.set_xlabel("time [s]", labelpad=1.5)
+    decorate(figure, chosen, arguments, bool(spans))
+    style.write(figure, arguments.output)
+
+
+def decorate(figure, chosen, arguments, spans):
+    height = figure.get_figheight()
+    figure.text(0.07, 1 - 0.3 / height,
+                f"Repetition {arguments.repetition} on the map; error and claimed σ a coordinate of each vehicle [m]",
+                fontsize=10.5, fontweight="bold", va="bottom")
+    entries = [
+        panels.line_entry("-", style.GREY, "true error, with 95 % interval"),
+        panels.line_entry(DASHED, style.GREY, "claimed σ"),
+        panels.line_entry("-", style.BLACK, "σ of the central filter; on maps, wide: the truth"),
+        panels.fill_entry("claims too much: overconfident", True),
+        panels.fill_entry("claims too little: gives away", False),
+    ]
+    if spans:
+        entries.append(panels.Patch(facecolor="#efe6cf", label="it sees the object"))
+    panels.legend(figure, (0.07, 0.62 / height), entries, 4)
+    others = chosen.described("rule")
+    sentences = [f"Root mean squares over {chosen.repetitions} paired repetitions{'; ' + others if others else ''}."]
+    if chosen.failed:
+        sentences.append(f"{chosen.failed} failed runs left out.")
+    panels.write_caption(figure, 0.07, sentences)
+
+
+if __name__ == "__main__":
+    data.main(main)

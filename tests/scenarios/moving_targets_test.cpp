@@ -179,7 +179,7 @@ TEST_F(MovingTargets, ATargetOnAPathIsFollowedAndItsTrueCovarianceIsUnknown) {
 
 TEST_F(MovingTargets, WhatDoesNotGoTogetherIsRefused) {
   EXPECT_EQ(error("step_s = 0.5\n", ""),
-            "s.toml:7: world.targets[0].motion: needs world.step_s: how often agents look at "
+            "s.toml:6: world.targets[0].motion: needs world.step_s: how often agents look at "
             "targets that move and believe in them");
   EXPECT_EQ(error("moving-gaussian", "static-gaussian"),
             "s.toml:22: agents[0].estimator.acceleration_psd_m2_per_s3: not for kind = "

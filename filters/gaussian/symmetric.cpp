@@ -223,6 +223,24 @@ int exponent_of(const Matrix& matrix) {
   return matrix.size() == 0 ? 0 : binary_exponent(matrix.cwiseAbs().maxCoeff());
 }
 
+std::optional<Matrix> square_root(const Matrix& omega) {
+  const Scaled scaled = scale(omega);
+  Matrix g;
+  if (scaled.definiteness == Definiteness::positive && scaled.cholesky.size() > 0) {
+    g = scaled.cholesky;
+  } else if (scaled.definiteness == Definiteness::indefinite ||
+             scaled.definiteness == Definiteness::overflow) {
+    return std::nullopt;
+  } else {
+    const Eigenpairs pairs = eigenpairs(scaled.matrix);
+    g = pairs.vectors;
+    for (Eigen::Index j = 0; j < g.cols(); ++j)
+      g.col(j) *= std::sqrt(std::max(pairs.values(j), 0.0));
+  }
+  scale_rows(g, scaled.factor.cwiseInverse());
+  return g;
+}
+
 Matrix gram(const Matrix& w) {
   const Eigen::Index n = w.cols();
   Matrix out(n, n);

@@ -44,6 +44,9 @@ bool all_finite(const Plain& m) {
   return std::all_of(m.data(), m.data() + m.size(), [](double x) { return std::isfinite(x); });
 }
 
+/// G (n×n) with GGᵀ = Ω, for a singular Ω, too; nothing if Ω is indefinite or not finite.
+std::optional<Matrix> square_root(const Matrix& omega);
+
 /// Row i of `m` times factor(i).
 void scale_rows(Matrix& m, const Vector& factor);
 

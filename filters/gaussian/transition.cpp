@@ -12,25 +12,6 @@ namespace {
 
 using Decomposition = Eigen::PartialPivLU<Matrix>;
 
-/// G (n×n) with Ω = GGᵀ; nothing if there is none, for Ω is indefinite or not finite.
-std::optional<Matrix> root(const Matrix& omega) {
-  const Scaled scaled = scale(omega);
-  Matrix g;
-  if (scaled.definiteness == Definiteness::positive && scaled.cholesky.size() > 0) {
-    g = scaled.cholesky;
-  } else if (scaled.definiteness == Definiteness::indefinite ||
-             scaled.definiteness == Definiteness::overflow) {
-    return std::nullopt;
-  } else {
-    const Eigenpairs pairs = eigenpairs(scaled.matrix);
-    g = pairs.vectors;
-    for (Eigen::Index j = 0; j < g.cols(); ++j)
-      g.col(j) *= std::sqrt(std::max(pairs.values(j), 0.0));
-  }
-  scale_rows(g, scaled.factor.cwiseInverse());
-  return g;
-}
-
 Matrix product(const Matrix& a, const Matrix& b) { return a.lazyProduct(b); }
 
 }  // namespace
@@ -63,7 +44,7 @@ Prediction predict_with_gain(const Belief& belief, const Transition& transition)
   require(std::fabs(lu.determinant()) > 0.0, "predict: A is not invertible");
   const Matrix identity = Matrix::Identity(n, n);
   const Matrix back = lu.solve(identity);  // A⁻ᵀ
-  if (const auto omega_root = root(belief.omega)) {
+  if (const auto omega_root = square_root(belief.omega)) {
     const Matrix G = product(back, *omega_root);  // A⁻ᵀG_Ω
     const Matrix RG = product(R, G);
     const Scaled middle = scale(identity + product(G.transpose(), RG));

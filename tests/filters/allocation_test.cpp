@@ -6,9 +6,12 @@
 #include <cstdlib>
 #include <new>
 #include <utility>
+#include <vector>
 
 #include "filters/gaussian/codec.hpp"
 #include "filters/gaussian/fusion.hpp"
+#include "filters/gaussian/geolocation.hpp"
+#include "filters/gaussian/nonlinear.hpp"
 #include "filters/ledger/ledger.hpp"
 #include "tests/filters/gaussian/samples.hpp"
 
@@ -111,6 +114,30 @@ TEST(Allocation, DoesNotHappenInAWarmCodec) {
     EXPECT_EQ(allocations_of([&] { decode(bytes, back); }), 0u);
     EXPECT_EQ(back.beliefs.size(), message->beliefs.size());
   }
+}
+
+TEST(Allocation, DoesNotHappenInLooks) {
+  Terrain::Options options{.columns = 9, .rows = 9, .heights_m = std::vector<double>(81, 0.0)};
+  options.spacing_m = 20.0;
+  const Ground terrain = Terrain(std::move(options));
+  const Look look{infrared_camera, looking({10, 80, 40}, 0.0, 0.9), vector({120.0, 160.0}),
+                  look_covariance({0.5, 0.02, 1.0})};
+  const BearingOnly bearing{{vector({0.0, 0.0}), 0.0}};
+  const Belief prior = Belief::from_moments(vector({30.0, 20.0}), Matrix::Identity(2, 2));
+  Stream random = stream("looks");
+  int found = 0;
+  EXPECT_EQ(allocations_of([&] {
+              const Matrix S = Matrix::Identity(1, 1);
+              const Vector z = Vector::Constant(1, 0.5);
+              found += geolocate_linearised(look, terrain).has_value();
+              found += geolocate_unscented(look, terrain).has_value();
+              const auto normal = [&] { return random.normal(); };
+              found += geolocate_sampled(look, terrain, 50, normal).y.has_value();
+              found += extended_information(prior, bearing, z, S).information.has_value();
+              found += unscented_information(prior, bearing, z, S, 1.0).information.has_value();
+            }),
+            0u);
+  EXPECT_EQ(found, 5);
 }
 
 TEST(Allocation, DoesNotHappenInAWarmLedger) {

@@ -1,5 +1,6 @@
 #include "agents/estimator_agent.hpp"
 
+#include <cmath>
 #include <utility>
 
 #include "agents/estimators/shared_trajectories.hpp"
@@ -7,6 +8,22 @@
 #include "agents/estimators/whole_trajectories.hpp"
 
 namespace hearsay {
+namespace {
+
+void record_looks(Context& context, const LookSums& sums) {
+  Record& record = context.simulation().record();
+  const auto scalar = [&](const char* name, double value) {
+    record.scalar(context.id(), record.name(name), value);
+  };
+  const double hits = sums.looks - sums.missed, compared = sums.compared;
+  scalar("looks_missed", sums.missed);
+  scalar("look_sigma_along_m", std::sqrt(sums.variance_along_m2 / hits));
+  scalar("look_sigma_across_m", std::sqrt(sums.variance_across_m2 / hits));
+  scalar("look_kl_nats", sums.kl_nats / compared);
+  scalar("look_variance_gap", sums.log_variance_ratio / compared);
+}
+
+}  // namespace
 
 EstimatorAgent::EstimatorAgent(Context& context, Witness& witness, Options options)
     : Agent(context),
@@ -77,36 +94,60 @@ Process EstimatorAgent::look() {
   for (std::uint64_t count = 0; next <= options_.sensor_end; ++count) {
     co_await context().sleep_until(next, Phase::measure);
     for (std::size_t s = 0; s < options_.sensors.size() && context().up(); ++s) {
-      Stream draws = context().simulation().stream_at(
-          Purpose("sensor noise"), Entity::sensor(context().id(), static_cast<std::uint32_t>(s)),
-          count);
       const auto subject = static_cast<int>(s);
-      const auto information = look_at(subject, draws);
+      const auto information = look_at(subject, count);
       if (information) measured(subject, *information);
     }
     next = next + options_.sensor_period;
   }
 }
 
-std::optional<gaussian::Belief> EstimatorAgent::look_at(int subject, Stream& draws) {
-  PositionSensor& sensor = options_.sensors[static_cast<std::size_t>(subject)];
-  if (options_.moves && (sensor.has_direction() || options_.range_max_m)) {
+std::optional<gaussian::Belief> EstimatorAgent::look_at(int subject, std::uint64_t count) {
+  const auto stream = [&](const char* purpose) {
+    return context().simulation().stream_at(
+        Purpose(purpose), Entity::sensor(context().id(), static_cast<std::uint32_t>(subject)),
+        count);
+  };
+  Sensor& sensor = options_.sensors[static_cast<std::size_t>(subject)];
+  aim(sensor, subject);
+  if (options_.range_max_m && distance_m(sensor) > *options_.range_max_m) return std::nullopt;
+  Stream draws = stream("sensor noise");
+  const auto information = measure(sensor, draws);
+  CameraSensor* const camera = std::get_if<CameraSensor>(&sensor);
+  if (camera && camera->compares()) {
+    Stream reference = stream("sensor reference");
+    camera->compare(reference);
+  }
+  return information;
+}
+
+void EstimatorAgent::aim(Sensor& sensor, int subject) {
+  if (options_.moves && (has_direction(sensor) || options_.range_max_m)) {
     const Point place_m = context().position();
-    sensor.move_to({place_m[0], place_m[1]});
+    move_to(sensor, {place_m[0], place_m[1]});
   }
-  if (options_.motion) {
-    const auto truth = options_.targets[static_cast<std::size_t>(subject)].truth_at(
-        options_.motion->stamp_at(context().now()), options_.dimension);
-    sensor.look_towards({truth[0], truth[1]});
-  }
-  if (options_.range_max_m && sensor.distance_m() > *options_.range_max_m) return std::nullopt;
-  return sensor.measure(draws);
+  if (!options_.motion) return;
+  const auto truth = options_.targets[static_cast<std::size_t>(subject)].truth_at(
+      options_.motion->stamp_at(context().now()), options_.dimension);
+  look_towards(sensor, {truth[0], truth[1]});
 }
 
 void EstimatorAgent::measured(int subject, const gaussian::Belief& information) {
   advance();
   const gaussian::Belief whole = gaussian::lifted(information, options_.dimension);
   estimator_->measured(subject, whole, witness_.measured(subject, whole));
+}
+
+void EstimatorAgent::finish() {
+  LookSums sums;
+  bool any = false;
+  for (const Sensor& sensor : options_.sensors) {
+    const CameraSensor* const camera = std::get_if<CameraSensor>(&sensor);
+    if (!camera) continue;
+    sums += camera->sums();
+    any = true;
+  }
+  if (any) record_looks(context(), sums);
 }
 
 Process EstimatorAgent::replay() {

@@ -8,7 +8,7 @@
 
 #include "agents/agent.hpp"
 #include "agents/estimator.hpp"
-#include "agents/sensors/position.hpp"
+#include "agents/sensors/sensor.hpp"
 #include "agents/talk/periodic.hpp"
 #include "agents/witness.hpp"
 #include "filters/gaussian/fusion.hpp"
@@ -32,7 +32,7 @@ class EstimatorAgent final : public Agent {
     /// T in stamps: it believes in trajectories; nothing: in states as they are now.
     std::optional<int> window;
     /// One a subject: each looks at every `sensor_period` from `sensor_start` to `sensor_end`.
-    std::vector<PositionSensor> sensors;
+    std::vector<Sensor> sensors;
     bool moves = false;                 ///< sensors go with the agent
     std::optional<double> range_max_m;  ///< what is farther away is not seen; > 0
     /// With a motion: where the subjects are, for the sensors. They outlive the agent.
@@ -49,6 +49,7 @@ class EstimatorAgent final : public Agent {
   void start() override;
   void on_packet(const Packet& packet) override;
   void on_up(bool forgets) override;
+  void finish() override;
 
   const Estimator& estimator() const { return *estimator_; }
 
@@ -56,8 +57,10 @@ class EstimatorAgent final : public Agent {
   static std::unique_ptr<Estimator> make_estimator(Context& context, Witness& witness,
                                                    const Options& options);
   Process look();
-  /// Nothing if the subject is too far away.
-  std::optional<gaussian::Belief> look_at(int subject, Stream& draws);
+  /// The `count`-th look; nothing if the subject is too far away, or the look missed it.
+  std::optional<gaussian::Belief> look_at(int subject, std::uint64_t count);
+  /// From where the agent is, to where the subject is.
+  void aim(Sensor& sensor, int subject);
   void measured(int subject, const gaussian::Belief& information);
   /// Brings the estimator to the present.
   void advance();

@@ -68,6 +68,18 @@ constexpr std::array kMetrics = {
     MetricInfo{"messages_refused", kScalar, kMean, false,
                "messages malformed, or older than known"},
     MetricInfo{"measurements", kScalar, kMean, false, "measurements made"},
+    MetricInfo{"looks_missed", kScalar, kMean, false,
+               "by cameras: looks past the ground, or whose covariance was none"},
+    MetricInfo{"look_sigma_along_m", kScalar, kMean, false,
+               "by cameras: claimed standard deviation along the line of sight on the ground, rms "
+               "over looks, m"},
+    MetricInfo{"look_sigma_across_m", kScalar, kMean, false, "the same across it, m"},
+    MetricInfo{"look_kl_nats", kScalar, kMean, false,
+               "by cameras: D(Monte Carlo ‖ claimed) of a look's ground position, from the same "
+               "pose, mean over looks, nats"},
+    MetricInfo{"look_variance_gap", kScalar, kMean, false,
+               "by cameras: |log(claimed/Monte Carlo variance)| along the line of sight, mean over "
+               "looks"},
     MetricInfo{
         "agree_again_s", kScalar, Aggregate::median, false,
         "of agent −1: from record.agreement.from_s to the first sample from which on no two "

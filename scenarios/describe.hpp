@@ -64,7 +64,8 @@ void describe(V& v, CircleSpec& s) {
 
 template <class V>
 void describe(V& v, SensorSpec& s) {
-  v.field("kind", s.kind, one_of({"none", "position", "log"}), "what is measured");
+  v.field("kind", s.kind, one_of({"none", "position", "range-bearing", "camera", "log"}),
+          "what is measured");
   v.field("period_s", s.period_s, time_span(false), "time between looks");
   v.field("start_s", s.start_s, time_span(true), "first look");
   v.field("end_s", s.end_s, time_span(true), "no look after; default: the end of the run");
@@ -73,15 +74,32 @@ void describe(V& v, SensorSpec& s) {
           "position: noise along the line of sight, instead of sigma_m");
   v.field("sigma_across_m", s.sigma_across_m, greater_than_zero(),
           "position: noise across the line of sight, with sigma_along_m");
-  v.field("range_max_m", s.range_max_m, greater_than_zero(),
-          "position: what is farther away is not seen; default: no limit");
-  v.field("sigma_range_m", s.sigma_range_m, greater_than_zero(), "log: noise of the range");
+  v.field(
+      "range_max_m", s.range_max_m, greater_than_zero(),
+      "position, range-bearing, camera: what is farther away in the plane is not seen; default: "
+      "no limit");
+  v.field("sigma_range_m", s.sigma_range_m, greater_than_zero(),
+          "log, range-bearing: noise of the range");
   v.field("sigma_bearing_rad", s.sigma_bearing_rad, greater_than_zero(),
-          "log: noise of the bearing");
+          "log, range-bearing: noise of the bearing");
   v.field("sigma_heading_rad", s.sigma_heading_rad, at_least(0.0),
-          "log: uncertainty of the robot's heading");
+          "log, range-bearing: uncertainty of the own heading");
   v.field("sigma_position_m", s.sigma_position_m, at_least(0.0),
-          "log: uncertainty of the robot's position, per axis");
+          "log, range-bearing, camera: uncertainty of the own position, per axis");
+  v.field("sigma_attitude_rad", s.sigma_attitude_rad, at_least(0.0),
+          "camera: uncertainty of the attitude, about each of its axes");
+  v.field("sigma_pixel", s.sigma_pixel, greater_than_zero(),
+          "camera: noise of the pixel, per axis");
+  v.field("focal_px", s.focal_px, greater_than_zero(),
+          "camera: focal lengths across and down the image");
+  v.field("center_px", s.center_px, anything(), "camera: pixel of the axis of view");
+  v.field("propagation", s.propagation, one_of({"unscented", "linearised", "monte-carlo"}),
+          "camera: how errors of pose and pixel become one on the ground");
+  v.field("kappa", s.kappa, between(-7.5, 100.0),
+          "camera, \"unscented\": spread of the sigma points; default -5, that is 3 - n");
+  v.field("draws", s.draws, between(2, 16000), "camera, \"monte-carlo\": draws a look");
+  v.field("reference_draws", s.reference_draws, between(2, 16000),
+          "camera: draws of a reference that each look is compared with; default: none");
 }
 
 template <class V>

@@ -5,6 +5,7 @@
 
 #include "scenarios/channel.hpp"
 #include "scenarios/network.hpp"
+#include "scenarios/sensors.hpp"
 #include "scenarios/targets.hpp"
 #include "scenarios/traffic.hpp"
 #include "sim/kernel/error.hpp"
@@ -15,36 +16,9 @@ namespace {
 gaussian::Belief information_of(const mrclam::Sighting& sighting, const SensorSpec& spec) {
   const gaussian::PositionMeasurement measured = gaussian::range_bearing_to_position(
       {sighting.pose.x_m, sighting.pose.y_m, sighting.pose.heading_rad}, sighting.range_m,
-      sighting.bearing_rad,
-      {.sigma_range_m = spec.sigma_range_m,
-       .sigma_bearing_rad = spec.sigma_bearing_rad,
-       .sigma_heading_rad = spec.sigma_heading_rad,
-       .sigma_position_m = spec.sigma_position_m});
+      sighting.bearing_rad, range_bearing_noise_of(spec));
   const gaussian::Matrix identity = gaussian::Matrix::Identity(2, 2);
   return gaussian::measurement_information(identity, measured.S, measured.z);
-}
-
-std::vector<PositionSensor> position_sensors(const AgentSpec& spec, const WorldSpec& world,
-                                             const std::optional<std::array<double, 2>>& place) {
-  std::vector<PositionSensor> sensors;
-  if (spec.sensor.kind != "position") return sensors;
-  const double along = spec.sensor.sigma_m.value_or(spec.sensor.sigma_along_m.value_or(1.0));
-  const double across = spec.sensor.sigma_m.value_or(spec.sensor.sigma_across_m.value_or(1.0));
-  for (const TargetSpec& target : world.targets) {
-    std::array<double, 2> sensor_m = place.value_or(std::array{0.0, 0.0});
-    std::array target_m{sensor_m[0] + 1.0, sensor_m[1]};  // it is where it will be
-    if (!target.motion) target_m = {target.position_m->at(0), target.position_m->at(1)};
-    if (spec.motion) sensor_m = {target_m[0] - 1.0, target_m[1]};  // it looks from where it will be
-    if (along != across && sensor_m == target_m) {
-      throw InputError("agent at the place of target '" + target.name +
-                       "' has no line of sight to it; move it or give sensor.sigma_m");
-    }
-    sensors.emplace_back(PositionSensor::Options{.sensor_m = sensor_m,
-                                                 .target_m = target_m,
-                                                 .sigma_along_m = along,
-                                                 .sigma_across_m = across});
-  }
-  return sensors;
 }
 
 std::vector<Metric> metrics_of(const RecordSpec& record) {
@@ -143,8 +117,7 @@ std::shared_ptr<const PreparedScenario> prepare(Scenario scenario, const Catalog
         {target.name, target.position_m.value_or(std::vector<double>{0.0, 0.0}), {}});
   }
   for (std::size_t i = 0; i < prepared->specs.size(); ++i) {
-    prepared->sensors.push_back(
-        position_sensors(*prepared->specs[i], s.world, prepared->places[i]));
+    prepared->sensors.push_back(sensors_of(*prepared->specs[i], s.world, prepared->places[i]));
   }
   prepared->motion = motion_model_of(s);
   if (s.world.log) prepare_log(*prepared, logs);

@@ -46,13 +46,13 @@ class LogCache {
 struct PreparedScenario {
   Scenario scenario;
   Time end;
-  std::vector<std::string> names;                    ///< of agents
-  std::vector<const AgentSpec*> specs;               ///< of each agent, into `scenario`
-  AgentPlaces places;                                ///< of agents
-  std::optional<LinkPlan> links;                     ///< unless the graph is drawn anew in each run
-  std::vector<Subject> subjects;                     ///< empty: nothing for the witness to watch
-  std::optional<MotionModel> motion;                 ///< of subjects that move
-  std::vector<std::vector<PositionSensor>> sensors;  ///< of each agent
+  std::vector<std::string> names;            ///< of agents
+  std::vector<const AgentSpec*> specs;       ///< of each agent, into `scenario`
+  AgentPlaces places;                        ///< of agents
+  std::optional<LinkPlan> links;             ///< unless the graph is drawn anew in each run
+  std::vector<Subject> subjects;             ///< empty: nothing for the witness to watch
+  std::optional<MotionModel> motion;         ///< of subjects that move
+  std::vector<std::vector<Sensor>> sensors;  ///< of each agent
   std::vector<std::vector<Observation>> observations;  ///< of each agent, from a log
   std::shared_ptr<const mrclam::Dataset> log;
   std::vector<Metric> series;

@@ -41,18 +41,27 @@ struct CircleSpec {
 };
 
 struct SensorSpec {
-  std::string kind = "none";             ///< "none" | "position" | "log"
+  /// "none" | "position" | "range-bearing" | "camera" | "log"
+  std::string kind = "none";
   double period_s = 1.0;                 ///< > 0
   double start_s = 0.0;                  ///< first look, ≥ 0
   std::optional<double> end_s;           ///< no look after; default: the end of the run
   std::optional<double> sigma_m;         ///< position: same in every direction, > 0
   std::optional<double> sigma_along_m;   ///< position: along the line of sight, with …
   std::optional<double> sigma_across_m;  ///< … across it; both instead of sigma_m
-  std::optional<double> range_max_m;     ///< position: what is farther away is not seen, > 0
-  double sigma_range_m = 0.15;           ///< log, > 0
-  double sigma_bearing_rad = 0.08;       ///< log, > 0
-  double sigma_heading_rad = 0.03;       ///< log: pose, ≥ 0
-  double sigma_position_m = 0.05;        ///< log: pose, per axis, ≥ 0
+  std::optional<double> range_max_m;     ///< not log: what is farther away is not seen, > 0
+  double sigma_range_m = 0.15;           ///< log, range-bearing; > 0
+  double sigma_bearing_rad = 0.08;       ///< log, range-bearing; > 0
+  double sigma_heading_rad = 0.03;       ///< log, range-bearing: pose, ≥ 0
+  double sigma_position_m = 0.05;        ///< the same and camera: pose, per axis, ≥ 0
+  double sigma_attitude_rad = 0.02;      ///< camera: pose, about each axis, ≥ 0
+  double sigma_pixel = 1.0;              ///< camera: per axis, > 0
+  std::vector<double> focal_px = {347.881, 345.876};   ///< camera: focal lengths, > 0
+  std::vector<double> center_px = {119.512, 161.781};  ///< camera: where the view's axis is
+  std::string propagation = "unscented";               ///< camera: | "linearised" | "monte-carlo"
+  std::optional<double> kappa;         ///< camera, "unscented": −7.5 … 100; default −5
+  int draws = 1000;                    ///< camera, "monte-carlo": 2 … 16000
+  std::optional<int> reference_draws;  ///< camera: 2 … 16000; none: looks are not compared
 };
 
 struct EstimatorSpec {

@@ -72,6 +72,10 @@ void check_links(ScenarioUnderCheck& file);
 /// @throws InputError.
 void check_services(ScenarioUnderCheck& file);
 
+/// Checks what cameras and range-bearing sensors need to know.
+/// @throws InputError.
+void check_sensors(const ScenarioUnderCheck& file);
+
 /// Checks that estimators, sensors and the motion of targets go together.
 /// @throws InputError.
 void check_estimators(ScenarioUnderCheck& file);

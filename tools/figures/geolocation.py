@@ -4,7 +4,7 @@ unscented transform, by Monte Carlo.
 
     geolocation.py DATABASE OUTPUT [--study S]
 
-For the study scenarios/merino/geolocation. OUTPUT ends with .png, .svg or .pdf.
+For the study scenarios/merino/ch3-geolocation. OUTPUT ends with .png, .svg or .pdf.
 """
 
 import argparse

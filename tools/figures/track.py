@@ -2,9 +2,10 @@
 """Vehicles that follow an object by what they tell each other: where each believes it is in one run, then true
 error and claimed σ of each over time, a row a rule.
 
-    track.py DATABASE OUTPUT [--rules A;B;…] [--repetition 1] [--seen A:0-36,B:42-86] [--study S]
+    track.py DATABASE OUTPUT [--rules A;B;…] [--repetition 1] [--seen A:0-36,B:42-86] [--no-map]
+             [--study S]
 
-`seen` says when an agent sees the object. OUTPUT ends with .png, .svg or .pdf. Any other axis of the study is
+`seen` says when an agent sees the object; maps are of one object. OUTPUT ends with .png, .svg or .pdf. Any other axis of the study is
 chosen by an option of its name.
 """
 
@@ -53,7 +54,16 @@ def one_run(series, cell, repetition, agent):
     return np.where(count > 0, total, np.nan)
 
 
-def map_panel(axes, chosen, series, cell, repetition, agents, colors):
+def error_limits(series, cells, agents):
+    """Of all error axes; a claim far below every error leaves the panel."""
+    who = [Agent(series["rms_error_m"], a) for a in agents]
+    errors = panels.finite([panels.rms(w, cell).value for w in who for cell in cells], "error")
+    central = panels.rms(series["claimed_sigma_m"], cells[0], "central").value
+    low = min(np.nanmin(errors[errors > 0]), np.nanmin(central))
+    return 0.5 * low, 1.4 * np.nanmax(errors)
+
+
+def map_panel(axes, series, cell, repetition, agents, colors):
     x, y = (one_run(series[name], cell, repetition, data.CENTRAL) for name in ("x_m", "y_m"))
     ex, ey = (one_run(series[name], cell, repetition, data.CENTRAL) for name in ("x_error_m", "y_error_m"))
     axes.plot(x - ex, y - ey, color=style.BLACK, lw=2.6, alpha=0.35, solid_capstyle="round", zorder=2)
@@ -84,6 +94,7 @@ def main():
     parser.add_argument("--rules", default="", help="labels of the axis rule, with ; between them")
     parser.add_argument("--repetition", type=int, default=1, help="the run on the maps, from 1")
     parser.add_argument("--seen", default="", help="when an agent sees the object")
+    parser.add_argument("--no-map", action="store_true", help="no maps, as of several objects")
     arguments, chosen = data.parse(parser)
     chosen.require_axes("rule")
     spans = seen_spans(arguments.seen)
@@ -92,36 +103,35 @@ def main():
     agents = [int(a) for a in series["rms_error_m"].agents if a >= 0]
     names = chosen.agent_names()
     colors = dict(zip(agents, (style.BLUE, style.ORANGE, style.GREEN, style.PURPLE, style.SKY)))
-    rows, columns = len(rules), 1 + len(agents)
+    maps = 0 if arguments.no_map else 1
+    rows, columns = len(rules), maps + len(agents)
     figure = style.new_figure(3.0 * columns + 0.6, 2.2 * rows + 1.5)
     height = figure.get_figheight()
     grid = figure.add_gridspec(
         rows, columns, wspace=0.2, hspace=0.22, left=0.07, right=0.99, top=1 - 0.62 / height,
-        bottom=1.32 / height, width_ratios=[1.35] + [1.0] * len(agents),
+        bottom=1.32 / height, width_ratios=[1.35] * maps + [1.0] * len(agents),
     )
     cells = [chosen.cell(rule=rule) for rule in rules]
     for rule, cell in zip(rules, cells):
         if cell is None:
             raise data.UserError(f"--rules: no cell with rule {rule!r}; there are: "
                                  + "; ".join(chosen.labels("rule")))
-    values = panels.finite(
-        [panels.rms(Agent(series[name], a), cell).value
-         for name in ("rms_error_m", "claimed_sigma_m") for cell in cells for a in agents], "error")
-    limits = 0.7 * np.nanmin(values[values > 0]), 1.4 * np.nanmax(values)
+    limits = error_limits(series, cells, agents)
     for i, (rule, cell) in enumerate(zip(rules, cells)):
-        axes = figure.add_subplot(grid[i, 0])
-        map_panel(axes, chosen, series, cell, arguments.repetition - 1, agents, colors)
-        axes.set_title(rule, loc="left", pad=4, fontsize=9.5, fontweight="bold")
-        if i == rows - 1:
-            axes.set_xlabel("x [m]", labelpad=1.5)
+        if maps:
+            axes = figure.add_subplot(grid[i, 0])
+            map_panel(axes, series, cell, arguments.repetition - 1, agents, colors)
+            axes.set_title(rule, loc="left", pad=4, fontsize=9.5, fontweight="bold")
+            axes.set_xlabel("x [m]" if i == rows - 1 else "", labelpad=1.5)
         for k, agent in enumerate(agents):
-            axes = figure.add_subplot(grid[i, 1 + k])
+            axes = figure.add_subplot(grid[i, maps + k])
             style.time_axis(axes, series["rms_error_m"].t_s)
             style.log_axis(axes, *limits)
             time_panel(axes, series, cell, agent, colors[agent], spans.get(names[agent], []))
             axes.tick_params(labelleft=k == 0, labelbottom=i == rows - 1)
-            if i == 0:
-                axes.set_title(names[agent], color=colors[agent], fontweight="bold", loc="left", pad=4)
+            heading = names[agent] if maps else f"{names[agent]}, {rule}"
+            if i == 0 or not maps:
+                axes.set_title(heading, color=colors[agent], fontweight="bold", loc="left", pad=4)
             if i == rows - 1:
                 axes.set_xlabel("time [s]", labelpad=1.5)
     decorate(figure, chosen, arguments, bool(spans))
@@ -131,18 +141,19 @@ def main():
 def decorate(figure, chosen, arguments, spans):
     height = figure.get_figheight()
     figure.text(0.07, 1 - 0.3 / height,
-                f"Repetition {arguments.repetition} on the map; error and claimed σ a coordinate of each vehicle [m]",
+                ("" if arguments.no_map else f"Repetition {arguments.repetition} on the map; ")
+                + "error and claimed σ a coordinate of each vehicle [m]",
                 fontsize=10.5, fontweight="bold", va="bottom")
     entries = [
         panels.line_entry("-", style.GREY, "true error, with 95 % interval"),
         panels.line_entry(DASHED, style.GREY, "claimed σ"),
-        panels.line_entry("-", style.BLACK, "σ of the central filter; on maps, wide: the truth"),
+        panels.line_entry("-", style.BLACK, "σ of the central filter" + ("" if arguments.no_map else "; on maps, wide: the truth")),
         panels.fill_entry("claims too much: overconfident", True),
         panels.fill_entry("claims too little: gives away", False),
     ]
     if spans:
         entries.append(panels.Patch(facecolor="#efe6cf", label="it sees the object"))
-    panels.legend(figure, (0.07, 0.62 / height), entries, 4)
+    panels.legend(figure, (0.07, 0.62 / height), entries, 4 if figure.get_figwidth() > 11.0 else 3)
     others = chosen.described("rule")
     sentences = [f"Root mean squares over {chosen.repetitions} paired repetitions{'; ' + others if others else ''}."]
     if chosen.failed:

@@ -1,4 +1,4 @@
-"""Tests of the figure of merino/geolocation: its numbers against those worked out by hand."""
+"""Tests of the figure of merino/ch3-geolocation: its numbers against those worked out by hand."""
 
 import math
 import unittest

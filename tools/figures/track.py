@@ -141,8 +141,8 @@ def main():
 def decorate(figure, chosen, arguments, spans):
     height = figure.get_figheight()
     figure.text(0.07, 1 - 0.3 / height,
-                ("" if arguments.no_map else f"Repetition {arguments.repetition} on the map; ")
-                + "error and claimed σ a coordinate of each vehicle [m]",
+                ("" if arguments.no_map else f"Repetition {arguments.repetition} on the map. ")
+                + "Error and claimed σ a coordinate of each vehicle [m]",
                 fontsize=10.5, fontweight="bold", va="bottom")
     entries = [
         panels.line_entry("-", style.GREY, "true error, with 95 % interval"),

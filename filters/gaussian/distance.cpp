@@ -1,0 +1,117 @@
+#include "filters/gaussian/distance.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <vector>
+
+#include "filters/gaussian/symmetric.hpp"
+#include "filters/gaussian/trajectory_factor.hpp"
+#include "sim/kernel/error.hpp"
+#include "sim/math/functions.hpp"
+
+namespace hearsay::gaussian {
+namespace {
+
+bool positive(const Scaled& scaled) {
+  return scaled.definiteness == Definiteness::positive && scaled.cholesky.size() > 0;
+}
+
+/// `t` without the stamps that are not among `kept`; nothing if a step cannot be marginalised.
+std::optional<Trajectory> restricted(Trajectory t, const std::vector<Stamp>& kept) {
+  for (int k = t.steps() - 1; k >= 0; --k) {
+    const Stamp stamp = t.stamps()[static_cast<std::size_t>(k)];
+    if (std::binary_search(kept.begin(), kept.end(), stamp)) continue;
+    if (!t.marginalise(k)) return std::nullopt;
+  }
+  return t;
+}
+
+}  // namespace
+
+// With Ω = D⁻¹LLᵀD⁻¹ and W = L⁻¹DMᵀ: MΣMᵀ = WᵀW.
+std::optional<Expected> expected(const Belief& belief, const Matrix& M) {
+  require(M.cols() == belief.dimension(), "expected: M has another number of columns");
+  if (!all_finite(belief.xi)) return std::nullopt;
+  const Scaled omega = scale(belief.omega);
+  if (!positive(omega)) return std::nullopt;
+  Matrix w = M.transpose();
+  scale_rows(w, omega.factor);
+  solve_lower(omega.cholesky, w);
+  Matrix y = belief.xi;
+  scale_rows(y, omega.factor);
+  solve_lower(omega.cholesky, y);
+  Expected out{Vector(w.transpose().lazyProduct(y)), gram(w)};
+  if (!all_finite(out.z) || !all_finite(out.covariance)) return std::nullopt;
+  return out;
+}
+
+std::optional<double> nis(const Expected& expected, const Matrix& S, const Vector& z) {
+  require(z.size() == expected.z.size() && S.rows() == z.size() && S.cols() == z.size(),
+          "nis: dimensions differ");
+  return mahalanobis_squared(Vector(z - expected.z), Matrix(expected.covariance + S));
+}
+
+std::optional<double> nis(const Belief& belief, const Matrix& M, const Matrix& S, const Vector& z) {
+  const auto e = expected(belief, M);
+  if (!e) return std::nullopt;
+  return nis(*e, S, z);
+}
+
+// (Σ_a + Σ_b)⁻¹ = Ω_a(Ω_a + Ω_b)⁻¹Ω_b, and with the mean x of the fused belief
+//     d² = (x − μ_a)ᵀΩ_a(x − μ_a) + (x − μ_b)ᵀΩ_b(x − μ_b):
+// a solve with the sum, and nothing is subtracted from anything but means.
+std::optional<double> mahalanobis_squared(const Belief& a, const Belief& b) {
+  require(a.dimension() == b.dimension(), "mahalanobis_squared: dimensions differ");
+  if (definiteness(a) != Definiteness::positive) return std::nullopt;
+  if (definiteness(b) != Definiteness::positive) return std::nullopt;
+  Belief both = a;
+  both += b;
+  const auto x = state(both);
+  if (!x) return std::nullopt;
+  const auto from_a = nees(a, *x);
+  const auto from_b = nees(b, *x);
+  if (!from_a || !from_b) return std::nullopt;
+  return *from_a + *from_b;
+}
+
+std::optional<TrajectoryDistance> mahalanobis_squared(const Trajectory& a, const Trajectory& b) {
+  require(a.dimension() == b.dimension(), "mahalanobis_squared: dimensions differ");
+  std::vector<Stamp> common;
+  std::ranges::set_intersection(a.stamps(), b.stamps(), std::back_inserter(common));
+  if (common.empty()) return std::nullopt;
+  const auto on_a = restricted(a, common);
+  const auto on_b = restricted(b, common);
+  if (!on_a || !on_b) return std::nullopt;
+  Trajectory both = *on_a;
+  both += *on_b;
+  TrajectoryFactor factor;
+  if (factor.factor(both) != Definiteness::positive) return std::nullopt;
+  const std::vector<Vector>& x = factor.means();
+  const auto from_a = nees(*on_a, x);
+  const auto from_b = nees(*on_b, x);
+  if (!from_a || !from_b) return std::nullopt;
+  return TrajectoryDistance{*from_a + *from_b, static_cast<int>(common.size())};
+}
+
+// ∫√(pq) = (|Ω_p||Ω_q|)^¼ |½(Ω_p + Ω_q)|^-½ exp(−¼d²). With Ω_p + Ω_q = LLᵀ and the eigenvalues k
+// of K = L⁻¹(Ω_p − Ω_q)L⁻ᵀ the determinants make Π(1 − k²)^¼; so nearly equal beliefs lose nothing.
+std::optional<double> hellinger(const Belief& p, const Belief& q) {
+  const auto distance = mahalanobis_squared(p, q);
+  if (!distance) return std::nullopt;
+  const Scaled sum = scale(p.omega + q.omega);
+  if (!positive(sum)) return std::nullopt;
+  Matrix k = p.omega - q.omega;
+  for (int side = 0; side < 2; ++side) {
+    scale_rows(k, sum.factor);
+    solve_lower(sum.cholesky, k);
+    k.transposeInPlace();
+  }
+  double logarithm = -0.25 * *distance;
+  for (const double value : eigenvalues(0.5 * (k + k.transpose()))) {
+    logarithm += 0.25 * math::log1p(-std::min(value * value, 1.0));
+  }
+  return std::sqrt(-math::expm1(std::min(logarithm, 0.0)));
+}
+
+}  // namespace hearsay::gaussian

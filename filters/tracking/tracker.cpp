@@ -218,11 +218,21 @@ std::optional<Belief> Tracker::arrived(const Belief& belief, gaussian::Stamp sta
   return now;
 }
 
+// Positions alone are never farther apart than whole states, and cheaper to compare: where they lie
+// outside the gate nothing more is asked.
 Table Tracker::separations(std::span<const std::optional<Belief>> beliefs) const {
   Table d2(static_cast<int>(beliefs.size()), static_cast<int>(tracks_.size()), infinity);
+  std::vector<std::optional<gaussian::Expected>> places;
+  for (const Track& track : tracks_) places.push_back(position(track));
   for (int i = 0; i < d2.rows(); ++i) {
     const auto& belief = beliefs[static_cast<std::size_t>(i)];
-    for (int j = 0; belief && j < d2.columns(); ++j) {
+    if (!belief) continue;
+    const auto theirs = gaussian::expected(*belief, M_);
+    for (int j = 0; theirs && j < d2.columns(); ++j) {
+      const auto& mine = places[static_cast<std::size_t>(j)];
+      if (!mine) continue;
+      const auto near = gaussian::nis(*mine, theirs->covariance, theirs->z);
+      if (!near || *near > options_.gate) continue;
       const Track& track = tracks_[static_cast<std::size_t>(j)];
       d2(i, j) = gaussian::mahalanobis_squared(*belief, track.belief).value_or(infinity);
     }

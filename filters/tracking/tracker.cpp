@@ -62,7 +62,7 @@ Tracker::Tracker(const Options& options, gaussian::Stamp start)
 }
 
 bool Tracker::predict_to(gaussian::Stamp stamp) {
-  if (stamp < stamp_) return false;
+  if (stamp <= stamp_) return stamp == stamp_;
   for (Track& track : tracks_) track.belief = moved(track.belief, options_, stamp - stamp_);
   stamp_ = stamp;
   end_tracks();
@@ -288,6 +288,25 @@ bool Tracker::fuse(Track& track, const Belief& received) {
   track.belief = fused;
   ++counts_.fusions;
   return true;
+}
+
+Tracker::Counts& Tracker::Counts::operator+=(const Counts& other) {
+  scans += other.scans;
+  plots += other.plots;
+  late += other.late;
+  born += other.born;
+  born_of_hearsay += other.born_of_hearsay;
+  confirmed += other.confirmed;
+  ended_unconfirmed += other.ended_unconfirmed;
+  ended_missed += other.ended_missed;
+  ended_uncertain += other.ended_uncertain;
+  no_room += other.no_room;
+  fusions += other.fusions;
+  skipped += other.skipped;
+  apart += other.apart;
+  buried += other.buried;
+  refused += other.refused;
+  return *this;
 }
 
 std::vector<Report> Tracker::reports() const {

@@ -110,6 +110,7 @@ class Tracker {
     std::uint64_t apart = 0;    ///< beliefs outside the gate of their partner
     std::uint64_t buried = 0;   ///< beliefs about what this tracker has given up
     std::uint64_t refused = 0;  ///< reports that are none
+    Counts& operator+=(const Counts& other);
   };
   const Counts& counts() const { return counts_; }
 

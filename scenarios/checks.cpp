@@ -26,6 +26,7 @@ class Checker {
     check_motion(file_);
     check_estimators(file_);
     check_sensors(file_);
+    check_trackers(file_);
     check_traffic(file_);
     check_radio(file_);
     check_agreement();
@@ -125,7 +126,9 @@ void Checker::check_agent(const AgentSpec& agent, const KeyPath& path) {
   if (sensor.end_s && *sensor.end_s < sensor.start_s) {
     fail(sensor_path["end_s"], "must not be before start_s (" + to_toml(sensor.start_s) + " s)");
   }
-  if (sensor.kind == "position") check_position_sensor(agent, sensor_path);
+  if (sensor.kind == "position" || sensor.kind == "scan") {
+    check_position_sensor(agent, sensor_path);
+  }
   if (sensor.kind == "log" && !s_.world.log) {
     fail(sensor_path["kind"], "\"log\" needs a [world.log] to read");
   }
@@ -137,7 +140,7 @@ void Checker::check_agent(const AgentSpec& agent, const KeyPath& path) {
 
 void Checker::check_position_sensor(const AgentSpec& agent, const KeyPath& path) {
   const SensorSpec& sensor = agent.sensor;
-  if (s_.world.targets.empty()) {
+  if (sensor.kind == "position" && s_.world.targets.empty()) {
     fail(path["kind"], "\"position\" needs at least one target in world.targets");
   }
   const bool along = sensor.sigma_along_m.has_value();
@@ -151,7 +154,7 @@ void Checker::check_position_sensor(const AgentSpec& agent, const KeyPath& path)
          std::string("needs ") + (along ? "sigma_across_m" : "sigma_along_m") + ", too");
   }
   if (!sensor.sigma_m && !along) {
-    fail(path, "kind \"position\" needs sigma_m, or sigma_along_m and sigma_across_m");
+    fail(path, "kind \"" + sensor.kind + "\" needs sigma_m, or sigma_along_m and sigma_across_m");
   }
   if ((along || sensor.range_max_m) && !has_place(agent)) {
     fail(path[along ? "sigma_along_m" : "range_max_m"],

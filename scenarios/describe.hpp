@@ -15,6 +15,7 @@
 #include "filters/gaussian/fusion.hpp"
 #include "scenarios/describe_motion.hpp"
 #include "scenarios/describe_radio.hpp"
+#include "scenarios/describe_tracker.hpp"
 #include "scenarios/loader.hpp"
 #include "scenarios/reading.hpp"
 #include "scenarios/scenario.hpp"
@@ -64,20 +65,23 @@ void describe(V& v, CircleSpec& s) {
 
 template <class V>
 void describe(V& v, SensorSpec& s) {
-  v.field("kind", s.kind, one_of({"none", "position", "range-bearing", "camera", "log"}),
+  v.field("kind", s.kind, one_of({"none", "position", "range-bearing", "camera", "scan", "log"}),
           "what is measured");
   v.field("period_s", s.period_s, time_span(false), "time between looks");
   v.field("start_s", s.start_s, time_span(true), "first look");
   v.field("end_s", s.end_s, time_span(true), "no look after; default: the end of the run");
-  v.field("sigma_m", s.sigma_m, greater_than_zero(), "position: noise in every direction");
+  v.field("sigma_m", s.sigma_m, greater_than_zero(), "position, scan: noise in every direction");
   v.field("sigma_along_m", s.sigma_along_m, greater_than_zero(),
-          "position: noise along the line of sight, instead of sigma_m");
+          "position, scan: noise along the line of sight, instead of sigma_m");
   v.field("sigma_across_m", s.sigma_across_m, greater_than_zero(),
-          "position: noise across the line of sight, with sigma_along_m");
-  v.field(
-      "range_max_m", s.range_max_m, greater_than_zero(),
-      "position, range-bearing, camera: what is farther away in the plane is not seen; default: "
-      "no limit");
+          "position, scan: noise across the line of sight, with sigma_along_m");
+  v.field("range_max_m", s.range_max_m, greater_than_zero(),
+          "position, range-bearing, camera, scan: what is farther away in the plane is not seen; "
+          "default: no limit");
+  v.field("detection_probability", s.detection_probability, between(0.0, 1.0),
+          "scan: of a target within range; default 1");
+  v.field("false_alarms_per_km2", s.false_alarms_per_km2, at_least(0.0),
+          "scan: mean number of plots of nothing in each square kilometre within range; default 0");
   v.field("sigma_range_m", s.sigma_range_m, greater_than_zero(),
           "log, range-bearing: noise of the range");
   v.field("sigma_bearing_rad", s.sigma_bearing_rad, greater_than_zero(),
@@ -157,6 +161,7 @@ void describe(V& v, AgentSpec& s) {
   v.table("motion", s.motion, "how it moves; default: it stands still");
   v.table("sensor", s.sensor, "what it measures");
   v.table("estimator", s.estimator, "what it believes");
+  v.table("tracker", s.tracker, "how an agent of kind tracker finds and keeps targets");
   v.table("talk", s.talk, "what it says when");
   v.table("traffic", s.traffic, "what a source sends; default: nothing, it listens");
   v.field("parameters", s.parameters, anything(), "numbers for agents of a user's program");
@@ -175,6 +180,7 @@ template <class V>
 void describe(V& v, RecordSpec& s) {
   v.field("series", s.series, one_of_if_known(v.names().metrics), "metrics kept over time");
   v.field("series_period_s", s.series_period_s, time_span(false), "time between samples");
+  v.table("tracks", s.tracks, "how tracks are compared with targets");
   v.table("agreement", s.agreement, "how long it takes until all agree (agree_again_s)");
   v.field("messages", s.messages, one_of({"all", "counts"}), "each packet's fate, or sums only");
   v.field("links", s.links, one_of({"on", "off"}), "how many packets met which fate on each link");

@@ -7,6 +7,7 @@
 #include "scenarios/network.hpp"
 #include "scenarios/sensors.hpp"
 #include "scenarios/targets.hpp"
+#include "scenarios/trackers.hpp"
 #include "scenarios/traffic.hpp"
 #include "sim/kernel/error.hpp"
 
@@ -190,6 +191,10 @@ void Run::build_agents(const Catalog& catalog) {
                          .agreement = agreement_of(scenario.record),
                          .up = [this](AgentId id) { return radio_->up(id); }});
   }
+  if (has_trackers(scenario)) {
+    targets_ = target_truths_of(scenario, prepared_->end, simulation_.seed());
+    track_witness_ = make_track_witness(scenario, simulation_, targets_);
+  }
   for (std::size_t i = 0; i < prepared_->specs.size(); ++i) {
     const AgentSpec& spec = *prepared_->specs[i];
     const auto id = static_cast<AgentId>(i);
@@ -222,6 +227,7 @@ std::unique_ptr<Agent> Run::make_agent(AgentId id, const Catalog& catalog) {
   const auto own = catalog.agents().find(spec.kind);
   if (own != catalog.agents().end()) return own->second.make(*contexts_[i]);
   if (spec.kind == "estimator") return make_estimator(id);
+  if (spec.kind == "tracker") return make_tracker(id);
   std::optional<SourceTraffic> traffic;
   if (spec.traffic) traffic = traffic_of(*spec.traffic, id, simulation_.seed());
   return std::make_unique<SourceAgent>(*contexts_[i], traffic);
@@ -248,21 +254,34 @@ std::unique_ptr<Agent> Run::make_estimator(AgentId id) {
   options.sensor_start = Time::at(Duration::seconds(spec.sensor.start_s));
   if (spec.sensor.end_s) options.sensor_end = Time::at(Duration::seconds(*spec.sensor.end_s));
   options.observations = prepared_->observations[i];
-  if (spec.talk.policy == "periodic") {
-    const Duration period = Duration::seconds(spec.talk.period_s);
-    const Duration phase =
-        spec.talk.phase_s
-            ? Duration::seconds(*spec.talk.phase_s)
-            : talk_phase(talk_phase_of(spec.talk.phase), period, id,
-                         static_cast<int>(prepared_->specs.size()), simulation_.seed());
-    options.talk = PeriodicTalk{.period = period, .phase = phase};
-  }
+  options.talk = talk_of(id);
   return std::make_unique<EstimatorAgent>(*contexts_[i], *witness_, std::move(options));
+}
+
+std::unique_ptr<Agent> Run::make_tracker(AgentId id) {
+  const auto i = static_cast<std::size_t>(id);
+  TrackerAgent::Options options = tracker_options(*prepared_->specs[i], targets_);
+  options.talk = talk_of(id);
+  auto agent = std::make_unique<TrackerAgent>(*contexts_[i], std::move(options));
+  track_witness_->watch(id, agent->tracker());
+  return agent;
+}
+
+std::optional<PeriodicTalk> Run::talk_of(AgentId id) const {
+  const TalkSpec& talk = prepared_->specs[static_cast<std::size_t>(id)]->talk;
+  if (talk.policy != "periodic") return std::nullopt;
+  const Duration period = Duration::seconds(talk.period_s);
+  const Duration phase =
+      talk.phase_s ? Duration::seconds(*talk.phase_s)
+                   : talk_phase(talk_phase_of(talk.phase), period, id,
+                                static_cast<int>(prepared_->specs.size()), simulation_.seed());
+  return PeriodicTalk{.period = period, .phase = phase};
 }
 
 RunEnd Run::run() {
   try {
     if (witness_) witness_->start();
+    if (track_witness_) track_witness_->start();
     if (life_) life_->start();
     for (std::size_t i = 0; i < agents_.size(); ++i) {
       simulation_.acting_for(static_cast<AgentId>(i));
@@ -293,11 +312,13 @@ void Run::keep_record_only() {
   radio_.reset();
   movement_.reset();
   witness_.reset();
+  track_witness_.reset();
 }
 
 void Run::leave_final_values() {
   for (const auto& agent : agents_) agent->finish();
   if (witness_) witness_->finish();
+  if (track_witness_) track_witness_->finish();
   radio_->finish();
   record_radio();
   record_links();

@@ -15,6 +15,8 @@
 #include "agents/catalog.hpp"
 #include "agents/estimator_agent.hpp"
 #include "agents/source_agent.hpp"
+#include "agents/target_truth.hpp"
+#include "agents/track_witness.hpp"
 #include "agents/witness.hpp"
 #include "net/movement.hpp"
 #include "scenarios/life.hpp"
@@ -86,6 +88,8 @@ class Run {
   void build_agents(const Catalog& catalog);
   std::unique_ptr<Agent> make_agent(AgentId id, const Catalog& catalog);
   std::unique_ptr<Agent> make_estimator(AgentId id);
+  std::unique_ptr<Agent> make_tracker(AgentId id);
+  std::optional<PeriodicTalk> talk_of(AgentId id) const;
   void leave_final_values();
   void record_radio();
   void record_links();
@@ -94,9 +98,11 @@ class Run {
   // The order matters: what is below is destroyed first and may use what is above.
   std::shared_ptr<const PreparedScenario> prepared_;
   Simulation simulation_;
-  std::vector<Subject> subjects_;      // with the truth of this run
-  std::unique_ptr<Witness> witness_;   // owns the riders of packets in flight
-  std::unique_ptr<AgentPaths> paths_;  // null if nobody moves, and so the next two
+  std::vector<Subject> subjects_;                // with the truth of this run
+  std::vector<TargetTruth> targets_;             // of this run, for trackers
+  std::unique_ptr<TrackWitness> track_witness_;  // null without trackers
+  std::unique_ptr<Witness> witness_;             // owns the riders of packets in flight
+  std::unique_ptr<AgentPaths> paths_;            // null if nobody moves, and so the next two
   std::unique_ptr<Places> places_;
   std::unique_ptr<Movement> movement_;
   std::unique_ptr<Radio> radio_;

@@ -11,6 +11,7 @@
 
 #include "scenarios/motion_spec.hpp"
 #include "scenarios/radio_spec.hpp"
+#include "scenarios/tracker_spec.hpp"
 
 namespace hearsay {
 
@@ -41,21 +42,25 @@ struct CircleSpec {
 };
 
 struct SensorSpec {
-  /// "none" | "position" | "range-bearing" | "camera" | "log"
+  /// "none" | "position" | "range-bearing" | "camera" | "scan" | "log"
   std::string kind = "none";
   double period_s = 1.0;                 ///< > 0
   double start_s = 0.0;                  ///< first look, ≥ 0
   std::optional<double> end_s;           ///< no look after; default: the end of the run
-  std::optional<double> sigma_m;         ///< position: same in every direction, > 0
-  std::optional<double> sigma_along_m;   ///< position: along the line of sight, with …
-  std::optional<double> sigma_across_m;  ///< … across it; both instead of sigma_m
+  std::optional<double> sigma_m;         ///< position, scan: same in every direction, > 0
+  std::optional<double> sigma_along_m;   ///< position, scan: along the line of sight, …
+  std::optional<double> sigma_across_m;  ///< … with across it; both instead of sigma_m
   std::optional<double> range_max_m;     ///< not log: what is farther away is not seen, > 0
-  double sigma_range_m = 0.15;           ///< log, range-bearing; > 0
-  double sigma_bearing_rad = 0.08;       ///< log, range-bearing; > 0
-  double sigma_heading_rad = 0.03;       ///< log, range-bearing: pose, ≥ 0
-  double sigma_position_m = 0.05;        ///< the same and camera: pose, per axis, ≥ 0
-  double sigma_attitude_rad = 0.02;      ///< camera: pose, about each axis, ≥ 0
-  double sigma_pixel = 1.0;              ///< camera: per axis, > 0
+  /// scan: of a target within range, 0 … 1; default 1
+  std::optional<double> detection_probability;
+  /// scan: mean number in each square kilometre within range, ≥ 0; default 0
+  std::optional<double> false_alarms_per_km2;
+  double sigma_range_m = 0.15;       ///< log, range-bearing; > 0
+  double sigma_bearing_rad = 0.08;   ///< log, range-bearing; > 0
+  double sigma_heading_rad = 0.03;   ///< log, range-bearing: pose, ≥ 0
+  double sigma_position_m = 0.05;    ///< the same and camera: pose, per axis, ≥ 0
+  double sigma_attitude_rad = 0.02;  ///< camera: pose, about each axis, ≥ 0
+  double sigma_pixel = 1.0;          ///< camera: per axis, > 0
   std::vector<double> focal_px = {347.881, 345.876};   ///< camera: focal lengths, > 0
   std::vector<double> center_px = {119.512, 161.781};  ///< camera: where the view's axis is
   std::string propagation = "unscented";               ///< camera: | "linearised" | "monte-carlo"
@@ -98,13 +103,14 @@ struct TrafficSpec {
 
 struct AgentSpec {
   std::string name;                ///< default "<kind><i>"; with count > 1 a number is appended
-  std::string kind = "estimator";  ///< or "source", or one that a user's program adds
+  std::string kind = "estimator";  ///< "tracker", "source", or one that a program adds
   int count = 1;                   ///< 1 … 1e6
   std::optional<std::vector<double>> position_m;  ///< 2 coordinates
   std::optional<CircleSpec> circle;               ///< instead of position_m
   std::optional<MotionSpec> motion;               ///< none: it stands still
   SensorSpec sensor;
   EstimatorSpec estimator;
+  TrackerSpec tracker;
   TalkSpec talk;
   std::optional<TrafficSpec> traffic;        ///< of a source; none: it listens
   std::map<std::string, double> parameters;  ///< free, for agents of a user's program
@@ -120,6 +126,7 @@ struct AgreementSpec {
 struct RecordSpec {
   std::vector<std::string> series;  ///< names of metrics kept over time; empty: none
   double series_period_s = 1.0;     ///< > 0; samples at 0, period, 2·period, … and at the end
+  TrackScoreSpec tracks;
   std::optional<AgreementSpec> agreement;  ///< none: agree_again_s is not recorded
   std::string messages = "counts";         ///< "all" | "counts"
   std::string links = "on";                ///< "on" | "off"

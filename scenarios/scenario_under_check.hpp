@@ -79,6 +79,9 @@ void check_sensors(const ScenarioUnderCheck& file);
 /// Checks that estimators, sensors and the motion of targets go together.
 /// @throws InputError.
 void check_estimators(ScenarioUnderCheck& file);
+/// Checks agents that track, and their sensors.
+/// @throws InputError.
+void check_trackers(ScenarioUnderCheck& file);
 
 /// Checks how agents and targets move, and reads their tracks.
 /// @throws InputError.

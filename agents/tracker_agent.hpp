@@ -1,0 +1,67 @@
+// The tracker agent: scans, keeps tracks of what it finds, tells others of them, and takes in what
+// they tell. It does not know how many targets there are, nor whose plot is whose.
+//
+// A message is a StampedGaussianMessage (filters/gaussian/codec.hpp) with the sender's clock in ns
+// as its stamp and the labels of its tracks in place of subjects.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "agents/agent.hpp"
+#include "agents/sensors/scan.hpp"
+#include "agents/talk/periodic.hpp"
+#include "agents/target_truth.hpp"
+#include "filters/gaussian/codec.hpp"
+#include "filters/tracking/tracker.hpp"
+
+namespace hearsay {
+
+class TrackerAgent final : public Agent {
+ public:
+  struct Options {
+    tracking::Tracker::Options tracker;  ///< two axes, stamps in nanoseconds
+    std::optional<ScanSensor> sensor;    ///< nothing: it knows what others tell, no more
+    Duration sensor_period = Duration::nanoseconds(1'000'000'000);
+    Time sensor_start;
+    Time sensor_end = Time::never();
+    std::span<const TargetTruth> targets;  ///< for the sensor; they outlive the agent
+    std::optional<PeriodicTalk> talk;      ///< nothing: never talks
+  };
+  TrackerAgent(Context& context, Options options);
+
+  void start() override;
+  void on_packet(const Packet& packet) override;
+  /// One that lost its memory has no tracks, and counts its labels anew.
+  void on_up(bool forgets) override;
+  /// Leaves what it counted.
+  void finish() override;
+
+  const tracking::Tracker& tracker() const { return tracker_; }
+
+ private:
+  Process look();
+  void scan(std::uint64_t count);
+  Process talk();
+  void say(std::uint64_t tick);
+  bool outdated(AgentId from, const gaussian::Message& message);
+
+  Options options_;
+  tracking::Tracker tracker_;
+  NameId message_kind_;
+  struct Heard {
+    AgentId from;
+    std::uint32_t incarnation, count;
+  };
+  std::vector<Heard> heard_;  // the newest message of each
+  std::uint32_t incarnation_ = 0;
+  std::uint32_t next_count_ = 1;
+  std::uint64_t refused_ = 0;
+  tracking::Tracker::Counts before_;  // of the trackers it has forgotten
+  gaussian::StampedMessage message_;
+  std::vector<std::byte> bytes_;
+  std::vector<tracking::Report> reports_;
+};
+
+}  // namespace hearsay

@@ -3,12 +3,14 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
 
+#include "filters/gaussian/batch.hpp"
 #include "filters/gaussian/belief.hpp"
-#include "filters/gaussian/codec.hpp"
+#include "filters/gaussian/message_forms.hpp"
 #include "filters/gaussian/trajectory_codec.hpp"
 #include "filters/gaussian/transition.hpp"
 #include "filters/ledger/ledger.hpp"
@@ -32,10 +34,12 @@ struct TrackedBelief {
   Ledger ledger;
 };
 
-/// The ledgers of the beliefs in one message, by position; rides beside the packet.
+/// The ledgers of the beliefs in one message, by position, and of their fresh parts where the rule
+/// fuses those apart; rides beside the packet.
 class LedgerRider final : public Rider {
  public:
   std::vector<Ledger> ledgers;
+  std::vector<Ledger> fresh;
 
  private:
   friend class LedgerPool;
@@ -61,6 +65,8 @@ class LedgerPool {
 /// message to the next agent finds it in the cache.
 struct EstimatorWorkspace {
   gaussian::StampedMessage outgoing, incoming;
+  gaussian::MessageExtras outgoing_extras, incoming_extras;
+  gaussian::BatchIntersection batch;
   gaussian::TrajectoryMessage outgoing_trajectories, incoming_trajectories;
   std::vector<std::byte> bytes;
   /// Not for beliefs, but for ledgers of trajectories: the stamp of every measurement, by subject.
@@ -89,6 +95,10 @@ class Estimator {
   virtual void measured(int subject, const gaussian::Belief& information,
                         std::size_t measurement) = 0;
 
+  /// The agent is about to talk, or would be if it did not only listen: rules that hold what they
+  /// hear fuse it now. `degree`: how many neighbours there are now.
+  virtual void about_to_talk(int degree) { static_cast<void>(degree); }
+
   struct Speech {
     std::span<const std::byte> bytes;  ///< valid until the next call of any with this workspace
     RiderPtr rider;
@@ -99,6 +109,11 @@ class Estimator {
   virtual Speech speech(AgentId neighbour) = 0;
   /// Tells that the last speech to `neighbour` (no_agent: to all) was handed over to the radio.
   virtual void sent(AgentId neighbour) = 0;
+
+  /// How much less the neighbours would know who predict that nothing has changed here since it
+  /// last spoke: D(now ‖ then) in nats, the largest over subjects; infinite where it was singular
+  /// or nothing of the kind is kept.
+  virtual double news_nats() const { return std::numeric_limits<double>::infinity(); }
 
   /// Takes in a message. Malformed or outdated ones are refused and counted.
   virtual void heard(AgentId from, std::span<const std::byte> bytes, const Rider* rider) = 0;

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "agents/estimators/shared_trajectories.hpp"
-#include "agents/estimators/static_gaussian.hpp"
 #include "agents/estimators/whole_trajectories.hpp"
 
 namespace hearsay {
@@ -23,6 +22,31 @@ void record_looks(Context& context, const LookSums& sums) {
   scalar("look_variance_gap", sums.log_variance_ratio / compared);
 }
 
+// Messages of one kind are understood by all who encode theirs alike.
+const char* kind_of(gaussian::MessageForm form) {
+  using gaussian::MessageForm;
+  switch (form) {
+    case MessageForm::split:
+      return "gaussian-split";
+    case MessageForm::consensus:
+      return "gaussian-consensus";
+    case MessageForm::hybrid:
+      return "gaussian-hybrid";
+    case MessageForm::diagonal:
+      return "gaussian-diagonal";
+    case MessageForm::quantised:
+      return "gaussian-quantised";
+    case MessageForm::plain:
+      break;
+  }
+  return "gaussian";
+}
+
+gaussian::MessageForm form_of(const EstimatorAgent::Options& options) {
+  return options.window ? gaussian::MessageForm::plain
+                        : message_form(options.rule, options.content);
+}
+
 }  // namespace
 
 EstimatorAgent::EstimatorAgent(Context& context, Witness& witness, Options options)
@@ -30,7 +54,8 @@ EstimatorAgent::EstimatorAgent(Context& context, Witness& witness, Options optio
       witness_(witness),
       options_(std::move(options)),
       estimator_(make_estimator(context, witness, options_)),
-      message_kind_(context.simulation().record().name("gaussian")) {
+      message_kind_(context.simulation().record().name(kind_of(form_of(options_)))),
+      policy_(options_.policy) {
   witness_.watch(context.id(), *estimator_);
 }
 
@@ -38,13 +63,19 @@ std::unique_ptr<Estimator> EstimatorAgent::make_estimator(Context& context, Witn
                                                           const Options& options) {
   if (!options.window) {
     return std::make_unique<StaticGaussianEstimator>(
-        StaticGaussianEstimator::Options{.rule = options.rule,
-                                         .subjects = options.subjects,
-                                         .dimension = options.dimension,
-                                         .motion = options.motion,
-                                         .ledgers = witness.ledgers(),
-                                         .workspace = &witness.workspace(),
-                                         .strangers = context.hears_strangers()},
+        StaticGaussianEstimator::Options{
+            .rule = options.rule,
+            .omega = options.omega,
+            .correction = options.correction,
+            .content = options.content,
+            .bits = options.bits,
+            .exact = options.policy.kind != TalkPolicyKind::event_triggered,
+            .subjects = options.subjects,
+            .dimension = options.dimension,
+            .motion = options.motion,
+            .ledgers = witness.ledgers(),
+            .workspace = &witness.workspace(),
+            .strangers = context.hears_strangers()},
         context.neighbours());
   }
   if (const auto exchange = exchange_of(options.rule)) {
@@ -136,6 +167,7 @@ void EstimatorAgent::measured(int subject, const gaussian::Belief& information) 
   advance();
   const gaussian::Belief whole = gaussian::lifted(information, options_.dimension);
   estimator_->measured(subject, whole, witness_.measured(subject, whole));
+  measured_since_sent_ = true;
 }
 
 void EstimatorAgent::finish() {
@@ -161,16 +193,28 @@ Process EstimatorAgent::replay() {
 }
 
 Process EstimatorAgent::talk() {
-  for (std::uint64_t tick = 0;; ++tick) {
+  for (std::uint64_t tick = 0;;) {
     const Time when = options_.talk->tick(tick);
     co_await context().sleep_until(when);
-    say(tick);
+    tick += speak_or_not(tick);
   }
 }
 
-void EstimatorAgent::say(std::uint64_t tick) {
-  if (!context().up()) return;
+/// @return after how many ticks the agent asks itself again.
+std::uint64_t EstimatorAgent::speak_or_not(std::uint64_t tick) {
+  if (!context().up()) return 1;
   advance();
+  estimator_->about_to_talk(static_cast<int>(context().neighbours().size()));
+  if (options_.listens_only) return 1;
+  const TalkPolicy::Decision decision =
+      policy_.decide({.measured = measured_since_sent_,
+                      .divergence_nats = policy_.wants_divergence() ? estimator_->news_nats() : 0.0,
+                      .waiting = context().waiting()});
+  if (decision.talks) say(tick);
+  return decision.ticks;
+}
+
+void EstimatorAgent::say(std::uint64_t tick) {
   if (gaussian::info(options_.rule).sends != gaussian::Sends::belief_less_heard) {
     return say_to(no_agent, tick);
   }
@@ -193,7 +237,9 @@ void EstimatorAgent::say_to(AgentId receiver, std::uint64_t tick) {
   const bool update =
       gaussian::info(options_.rule).sends == gaussian::Sends::local_update && !options_.window;
   packet.subject = update ? tick : static_cast<std::uint64_t>(context().id());
-  if (context().send(packet)) estimator_->sent(receiver);
+  if (!context().send(packet)) return;
+  estimator_->sent(receiver);
+  measured_since_sent_ = false;
 }
 
 }  // namespace hearsay

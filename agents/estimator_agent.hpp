@@ -7,9 +7,10 @@
 #include <vector>
 
 #include "agents/agent.hpp"
-#include "agents/estimator.hpp"
+#include "agents/estimators/static_gaussian.hpp"
 #include "agents/sensors/sensor.hpp"
 #include "agents/talk/periodic.hpp"
+#include "agents/talk/policy.hpp"
 #include "agents/witness.hpp"
 #include "filters/gaussian/fusion.hpp"
 
@@ -26,6 +27,10 @@ class EstimatorAgent final : public Agent {
  public:
   struct Options {
     gaussian::Rule rule = gaussian::Rule::none;
+    double omega = 0.5;       ///< of ci-fixed, in (0, 1]
+    double correction = 1.0;  ///< γ of hybrid-consensus, ≥ 1
+    Content content = Content::belief;
+    int bits = 8;  ///< of an entry that is quantised, 4 … 16
     int subjects = 1;
     int dimension = 2;
     std::optional<MotionModel> motion;  ///< of the subjects; nothing: they stand still
@@ -42,7 +47,9 @@ class EstimatorAgent final : public Agent {
     Time sensor_end = Time::never();
     /// Measurements to replay, by time; they outlive the agent.
     std::span<const Observation> observations;
-    std::optional<PeriodicTalk> talk;  ///< nothing: never talks
+    std::optional<PeriodicTalk> talk;  ///< the ticks; nothing: neither talks nor fuses at ticks
+    TalkPolicy::Options policy;        ///< at which ticks it talks
+    bool listens_only = false;         ///< at none: what it holds is fused then
   };
   EstimatorAgent(Context& context, Witness& witness, Options options);
 
@@ -66,6 +73,7 @@ class EstimatorAgent final : public Agent {
   void advance();
   Process replay();
   Process talk();
+  std::uint64_t speak_or_not(std::uint64_t tick);
   void say(std::uint64_t tick);
   void say_to(AgentId receiver, std::uint64_t tick);
 
@@ -73,6 +81,8 @@ class EstimatorAgent final : public Agent {
   Options options_;
   std::unique_ptr<Estimator> estimator_;
   NameId message_kind_;
+  TalkPolicy policy_;
+  bool measured_since_sent_ = false;
   std::vector<AgentId> listeners_;  // of the talk that is being held
 };
 

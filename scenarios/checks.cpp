@@ -23,6 +23,7 @@ class Checker {
       check_agent(s_.agents[i], agents_[i]);
     }
     check_services(file_);
+    check_talk(file_);
     check_motion(file_);
     check_estimators(file_);
     check_sensors(file_);

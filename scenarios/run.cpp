@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "scenarios/channel.hpp"
+#include "scenarios/estimators.hpp"
 #include "scenarios/network.hpp"
 #include "scenarios/sensors.hpp"
 #include "scenarios/targets.hpp"
@@ -238,7 +239,7 @@ std::unique_ptr<Agent> Run::make_estimator(AgentId id) {
   const auto i = static_cast<std::size_t>(id);
   const AgentSpec& spec = *prepared_->specs[i];
   EstimatorAgent::Options options;
-  options.rule = gaussian::rule_by_name(spec.estimator.fusion).value();
+  set_rule(spec, prepared_->scenario, options);
   options.subjects = static_cast<int>(prepared_->subjects.size());
   options.motion = prepared_->motion;
   if (spec.estimator.kind == "trajectory-gaussian") {
@@ -254,22 +255,23 @@ std::unique_ptr<Agent> Run::make_estimator(AgentId id) {
   options.sensor_start = Time::at(Duration::seconds(spec.sensor.start_s));
   if (spec.sensor.end_s) options.sensor_end = Time::at(Duration::seconds(*spec.sensor.end_s));
   options.observations = prepared_->observations[i];
-  options.talk = talk_of(id);
+  // Who never talks has ticks at which it takes in what it holds.
+  const bool holds = gaussian::info(options.rule).memory == gaussian::Memory::held;
+  if (!options.listens_only || holds) options.talk = talk_of(id);
   return std::make_unique<EstimatorAgent>(*contexts_[i], *witness_, std::move(options));
 }
 
 std::unique_ptr<Agent> Run::make_tracker(AgentId id) {
   const auto i = static_cast<std::size_t>(id);
   TrackerAgent::Options options = tracker_options(*prepared_->specs[i], targets_);
-  options.talk = talk_of(id);
+  if (spec.talk.policy == "periodic") options.talk = talk_of(id);
   auto agent = std::make_unique<TrackerAgent>(*contexts_[i], std::move(options));
   track_witness_->watch(id, agent->tracker());
   return agent;
 }
 
-std::optional<PeriodicTalk> Run::talk_of(AgentId id) const {
+PeriodicTalk Run::talk_of(AgentId id) const {
   const TalkSpec& talk = prepared_->specs[static_cast<std::size_t>(id)]->talk;
-  if (talk.policy != "periodic") return std::nullopt;
   const Duration period = Duration::seconds(talk.period_s);
   const Duration phase =
       talk.phase_s ? Duration::seconds(*talk.phase_s)

@@ -89,7 +89,7 @@ class Run {
   std::unique_ptr<Agent> make_agent(AgentId id, const Catalog& catalog);
   std::unique_ptr<Agent> make_estimator(AgentId id);
   std::unique_ptr<Agent> make_tracker(AgentId id);
-  std::optional<PeriodicTalk> talk_of(AgentId id) const;
+  PeriodicTalk talk_of(AgentId id) const;
   void leave_final_values();
   void record_radio();
   void record_links();

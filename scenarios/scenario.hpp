@@ -76,16 +76,23 @@ struct EstimatorSpec {
   /// All but static-gaussian: needed, of the white-noise acceleration it expects, > 0
   std::optional<double> acceleration_psd_m2_per_s3;
   std::optional<double> window_s;  ///< trajectory-gaussian: T, a multiple of world.step_s
+  std::optional<double> omega;     ///< "ci-fixed", which needs it: weight of its own belief, (0, 1]
+  /// "hybrid-consensus" only: "nodes" | "one"; none: "nodes"
+  std::optional<std::string> correction;
   bool operator==(const EstimatorSpec&) const = default;
 };
 
 struct TalkSpec {
-  std::string policy = "periodic";  ///< "periodic" | "never"
-  double period_s = 5.0;            ///< > 0
-  std::string phase = "random";     ///< "random" | "staggered" | "together"
-  std::optional<double> phase_s;    ///< this agent's own phase instead, in [0, period)
+  /// "periodic" | "on-update" | "event-triggered" | "adaptive" | "never"
+  std::string policy = "periodic";
+  double period_s = 5.0;          ///< > 0
+  std::string phase = "random";   ///< "random" | "staggered" | "together"
+  std::optional<double> phase_s;  ///< this agent's own phase instead, in [0, period)
   /// "broadcast" | "acknowledged" | "store-and-forward" | "blackboard"
   std::string service = "broadcast";
+  std::optional<double> divergence_nats;  ///< "event-triggered", which needs it: > 0
+  std::string content = "belief";         ///< "belief" | "diagonal" | "quantised"
+  std::optional<int> bits;                ///< "quantised": of an entry, 4 … 16; none: 8
   bool operator==(const TalkSpec&) const = default;
 };
 

@@ -82,6 +82,9 @@ void check_estimators(ScenarioUnderCheck& file);
 /// Checks agents that track, and their sensors.
 /// @throws InputError.
 void check_trackers(ScenarioUnderCheck& file);
+/// Checks that what rules and talk need is given, and nothing that would be without effect.
+/// @throws InputError.
+void check_talk(const ScenarioUnderCheck& file);
 
 /// Checks how agents and targets move, and reads their tracks.
 /// @throws InputError.

@@ -12,7 +12,10 @@ const char* why_not(const gaussian::RuleInfo& rule, const std::string& service) 
   if (rule.sends == gaussian::Sends::belief_less_heard) {
     return "addresses each neighbour with what is new to it alone";
   }
-  if (rule.memory != gaussian::Memory::nothing) {
+  if (rule.sends == gaussian::Sends::belief_and_fresh) {
+    return "counts on hearing what was measured before anybody passes it on";
+  }
+  if (rule.memory != gaussian::Memory::nothing && rule.memory != gaussian::Memory::held) {
     return "books what it says as known to its neighbours, and to nobody else";
   }
   if (rule.sends == gaussian::Sends::local_update && service == "blackboard") {

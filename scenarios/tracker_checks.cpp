@@ -67,6 +67,15 @@ void TrackerChecker::check_tracker(const AgentSpec& agent, const KeyPath& path) 
     file_.fail(path["estimator"], "without effect: kind = \"tracker\" has agents.tracker instead");
   }
   if (world_.log) file_.fail(path["kind"], "\"tracker\" does not go with [world.log]");
+  const KeyPath talk = path["talk"];
+  if (agent.talk.policy != "periodic" && agent.talk.policy != "never") {
+    file_.fail(talk["policy"], "kind \"tracker\" knows \"periodic\" and \"never\" alone; found \"" +
+                                   agent.talk.policy + "\"");
+  }
+  if (agent.talk.content != "belief") {
+    file_.fail(talk["content"],
+               "kind \"tracker\" says whole beliefs; found \"" + agent.talk.content + "\"");
+  }
   if (agent.sensor.kind == "scan") {
     check_scan(agent.sensor, sensor);
   } else if (agent.sensor.kind != "none") {

@@ -3,8 +3,8 @@
 #include <optional>
 #include <string>
 
-#include "filters/gaussian/codec.hpp"
 #include "net/link_draw.hpp"
+#include "scenarios/estimators.hpp"
 #include "scenarios/scenario_under_check.hpp"
 #include "sim/kernel/time.hpp"
 
@@ -16,7 +16,14 @@ std::size_t message_bytes_max(const Scenario& scenario) {
   const bool estimates = std::any_of(scenario.agents.begin(), scenario.agents.end(),
                                      [](const AgentSpec& a) { return a.kind == "estimator"; });
   if (!estimates || scenario.world.targets.empty()) return 0;
-  return gaussian::encoded_size(scenario.world.targets.size(), 2);
+  std::size_t most = 0;
+  for (const AgentSpec& agent : scenario.agents) {
+    if (agent.kind != "estimator") continue;
+    most =
+        std::max(most, gaussian::encoded_size(message_form_of(agent), scenario.world.targets.size(),
+                                              2, agent.talk.bits.value_or(8)));
+  }
+  return most;
 }
 
 // What a service makes of a message of so many bytes; its summaries are packets, too.

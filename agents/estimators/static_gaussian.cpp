@@ -8,6 +8,7 @@ namespace hearsay {
 namespace {
 
 using gaussian::Belief;
+using gaussian::Fuses;
 using gaussian::Memory;
 using gaussian::Sends;
 
@@ -27,20 +28,33 @@ RiderPtr LedgerPool::make(LedgerRider*& rider) {
 
 StaticGaussianEstimator::StaticGaussianEstimator(const Options& options,
                                                  std::span<const AgentId> neighbours)
-    : options_(options), rule_(gaussian::info(options.rule)), workspace_(options.workspace) {
+    : options_(options),
+      rule_(gaussian::info(options.rule)),
+      form_(message_form(options.rule, options.content)),
+      workspace_(options.workspace) {
   if (workspace_ == nullptr) {
     own_workspace_ = std::make_unique<EstimatorWorkspace>();
     workspace_ = own_workspace_.get();
   }
   const auto subjects = static_cast<std::size_t>(options.subjects);
   own_.assign(subjects, unknown());
-  if (rule_.sends == Sends::local_update) unsent_ = own_;
+  if (keeps_ledger() && !options.exact) {
+    for (TrackedBelief& own : own_) own.ledger.mark_inexact();
+  }
+  if (rule_.sends == Sends::local_update || rule_.sends == Sends::belief_and_fresh ||
+      rule_.sends == Sends::hybrid) {
+    unsent_.assign(subjects, unknown());
+  }
+  if (rule_.sends == Sends::hybrid) last_fresh_ = unsent_;
+  last_said_.assign(subjects, Belief::unknown(options_.dimension));
   for (const AgentId id : neighbours) neighbours_.push_back(make_neighbour(id));
 }
 
 StaticGaussianEstimator::Neighbour StaticGaussianEstimator::make_neighbour(AgentId id) const {
-  Neighbour neighbour{.id = id, .memory = {}};
-  if (rule_.memory != Memory::nothing) {
+  Neighbour neighbour{.id = id, .memory = {}, .held = {}};
+  if (rule_.memory == Memory::held) {
+    neighbour.held.assign(own_.size(), {.said = unknown(), .fresh = unknown()});
+  } else if (rule_.memory != Memory::nothing) {
     neighbour.memory.assign(own_.size(), unknown());
   }
   return neighbour;
@@ -86,30 +100,25 @@ void StaticGaussianEstimator::measured(int subject, const Belief& information,
 
 StaticGaussianEstimator::Speech StaticGaussianEstimator::speech(AgentId neighbour) {
   const Neighbour* to = neighbour == no_agent ? nullptr : find(neighbour);
-  const std::vector<TrackedBelief>& says = unsent_.empty() ? own_ : unsent_;
-  const bool less_heard = rule_.sends == Sends::belief_less_heard;
-  require(!less_heard || to != nullptr, "a rule that speaks to each neighbour needs one");
+  require(rule_.sends != Sends::belief_less_heard || to != nullptr,
+          "a rule that speaks to each neighbour needs one");
   LedgerRider* rider = nullptr;
   Speech speech;
-  if (keeps_ledger()) speech.rider = options_.ledgers->make(rider);
-
+  if (keeps_ledger()) {
+    speech.rider = options_.ledgers->make(rider);
+    rider->ledgers.resize(own_.size());
+    if (rule_.sends == Sends::hybrid) rider->fresh.resize(own_.size());
+  }
   gaussian::Message& message = workspace_->outgoing.message;
-  std::size_t spoken = 0;
+  gaussian::MessageExtras& extras = workspace_->outgoing_extras;
   message.beliefs.resize(own_.size());
-  if (rider) rider->ledgers.resize(own_.size());
+  if (!unsent_.empty()) extras.fresh.resize(own_.size());
+  extras.degree = static_cast<std::uint32_t>(degree_);
+  extras.bits = options_.bits;
+  if (options_.content == Content::quantised) extras.quantised.resize(own_.size());
+  std::size_t spoken = 0;
   for (std::size_t s = 0; s < own_.size(); ++s) {
-    gaussian::BeliefEntry& entry = message.beliefs[spoken];
-    entry.subject = static_cast<std::uint32_t>(s);
-    entry.belief = says[s].belief;
-    if (less_heard) entry.belief -= to->memory[s].belief;
-    if (entry.belief.omega.isZero(0.0)) continue;
-    if (rider) {
-      rider->ledgers[spoken] = says[s].ledger;
-      if (less_heard) {
-        rider->ledgers[spoken].combine(1.0, 0.0, own_[s].ledger, 1.0, &to->memory[s].ledger);
-      }
-    }
-    ++spoken;
+    if (put_into_words(s, to, spoken, rider)) ++spoken;
   }
   message.beliefs.resize(spoken);
   if (spoken == 0) return {};
@@ -119,14 +128,39 @@ StaticGaussianEstimator::Speech StaticGaussianEstimator::speech(AgentId neighbou
     workspace_->outgoing.stamp = stamp_ * options_.motion->period.nanoseconds();
     gaussian::encode(workspace_->outgoing, workspace_->bytes);
   } else {
-    gaussian::encode(message, workspace_->bytes);
+    gaussian::encode(form_, message, workspace_->outgoing_extras, workspace_->bytes);
   }
   speech.bytes = workspace_->bytes;
   return speech;
 }
 
+/// Fills in entry `at` of the message; false if there is nothing to say.
+bool StaticGaussianEstimator::put_into_words(std::size_t subject, const Neighbour* to,
+                                             std::size_t at, LedgerRider* rider) {
+  const bool update = rule_.sends == Sends::local_update;
+  const bool less_heard = rule_.sends == Sends::belief_less_heard;
+  const TrackedBelief& says = update ? unsent_[subject] : own_[subject];
+  gaussian::BeliefEntry& entry = workspace_->outgoing.message.beliefs[at];
+  entry.subject = static_cast<std::uint32_t>(subject);
+  entry.belief = says.belief;
+  if (less_heard) entry.belief -= to->memory[subject].belief;
+  if (entry.belief.omega.isZero(0.0)) return false;
+  if (rider) {
+    rider->ledgers[at] = says.ledger;
+    if (!options_.exact) rider->ledgers[at].mark_inexact();
+    if (less_heard) {
+      rider->ledgers[at].combine(1.0, 0.0, says.ledger, 1.0, &to->memory[subject].ledger);
+    }
+    if (rule_.sends == Sends::hybrid) rider->fresh[at] = unsent_[subject].ledger;
+  }
+  if (!unsent_.empty() && !update) workspace_->outgoing_extras.fresh[at] = unsent_[subject].belief;
+  return options_.content == Content::belief || shorten(at, rider);
+}
+
 void StaticGaussianEstimator::sent(AgentId neighbour) {
+  if (!last_fresh_.empty()) last_fresh_ = unsent_;
   for (TrackedBelief& unsent : unsent_) unsent = unknown();
+  for (std::size_t s = 0; s < own_.size(); ++s) last_said_[s] = own_[s].belief;
   if (rule_.memory != Memory::last_exchanged) return;
   for (Neighbour& to : neighbours_) {
     if (neighbour == no_agent || neighbour == to.id) to.memory = own_;
@@ -155,30 +189,45 @@ void StaticGaussianEstimator::heard(AgentId from, std::span<const std::byte> byt
   for (std::size_t i = 0; i < message.beliefs.size(); ++i) {
     const gaussian::BeliefEntry& entry = message.beliefs[i];
     const auto subject = static_cast<int>(entry.subject);
-    const Ledger* ledger = ledgers ? &ledgers->ledgers[i] : nullptr;
-    if (!options_.motion) {
+    const Ledger* const ledger = ledgers ? &ledgers->ledgers[i] : nullptr;
+    if (rule_.fuses == Fuses::at_once) {
+      hold(entry.subject, *sender, i, ledgers);
+    } else if (rule_.fuses == Fuses::by_parts) {
+      fuse_by_parts(entry.subject, i, ledger);
+    } else if (options_.motion) {
+      fuse_older(subject, *sender, entry.belief, ledger);
+    } else {
       fuse(subject, *sender, entry.belief, ledger);
-      continue;
     }
-    received_.belief = entry.belief;
-    if (ledger != nullptr) received_.ledger = *ledger;
-    std::int64_t step = workspace_->incoming.stamp / options_.motion->period.nanoseconds();
-    for (; step < stamp_; ++step) predict(received_, step);
-    fuse(subject, *sender, received_.belief, ledger ? &received_.ledger : nullptr);
   }
+}
+
+/// A belief about a moving state, which is brought to the present first.
+void StaticGaussianEstimator::fuse_older(int subject, Neighbour& from, const Belief& belief,
+                                         const Ledger* ledger) {
+  received_.belief = belief;
+  if (ledger != nullptr) received_.ledger = *ledger;
+  std::int64_t step = workspace_->incoming.stamp / options_.motion->period.nanoseconds();
+  for (; step < stamp_; ++step) predict(received_, step);
+  fuse(subject, from, received_.belief, ledger ? &received_.ledger : nullptr);
 }
 
 bool StaticGaussianEstimator::decode(std::span<const std::byte> bytes,
                                      gaussian::StampedMessage& message) const {
-  if (!options_.motion) return gaussian::decode(bytes, message.message);
+  if (!options_.motion) {
+    return gaussian::decode(form_, bytes, message.message, workspace_->incoming_extras);
+  }
   const std::int64_t period = options_.motion->period.nanoseconds();
   return gaussian::decode(bytes, message) && message.stamp >= 0 &&
          message.stamp <= stamp_ * period && message.stamp % period == 0;
 }
 
 bool StaticGaussianEstimator::outdated(Neighbour& from, const gaussian::Message& message) const {
-  // Algorithm 3.4 as printed adds whatever arrives; only the rule that replaces needs an order.
-  if (rule_.memory != Memory::last_heard || !from.heard) return false;
+  // Algorithm 3.4 as printed adds whatever arrives; only rules that replace need an order, and
+  // those for which what was fresh once is not any more.
+  const bool ordered = rule_.memory == Memory::last_heard || rule_.memory == Memory::held ||
+                       rule_.fuses == Fuses::by_parts;
+  if (!ordered || !from.heard) return false;
   if (message.incarnation != from.incarnation) return message.incarnation < from.incarnation;
   return message.count <= from.count;
 }
@@ -187,9 +236,10 @@ void StaticGaussianEstimator::fuse(int subject, Neighbour& from, const Belief& b
                                    const Ledger* ledger) {
   const auto s = static_cast<std::size_t>(subject);
   TrackedBelief& own = own_[s];
-  if (rule_.directional) return fuse_by_direction(own, belief, ledger);
+  if (rule_.fuses == Fuses::by_direction) return fuse_by_direction(own, belief, ledger);
   TrackedBelief* memory = rule_.memory == Memory::nothing ? nullptr : &from.memory[s];
-  const gaussian::Coefficients k = gaussian::coefficients(options_.rule, own.belief, belief);
+  const gaussian::Coefficients k =
+      gaussian::coefficients(options_.rule, own.belief, belief, options_.omega);
   if (k.skipped != nullptr) {
     ++counts_.skipped;
     return;
@@ -217,8 +267,11 @@ void StaticGaussianEstimator::fuse(int subject, Neighbour& from, const Belief& b
 
 void StaticGaussianEstimator::fuse_by_direction(TrackedBelief& own, const Belief& belief,
                                                 const Ledger* ledger) {
-  const gaussian::DirectionalFusion fusion =
-      gaussian::fuse_by_direction(options_.rule, own.belief, belief);
+  take(own, gaussian::fuse_by_direction(options_.rule, own.belief, belief), belief, ledger);
+}
+
+void StaticGaussianEstimator::take(TrackedBelief& own, const gaussian::DirectionalFusion& fusion,
+                                   const Belief& belief, const Ledger* ledger) {
   if (fusion.skipped != nullptr) {
     ++counts_.skipped;
     return;
@@ -247,9 +300,13 @@ void StaticGaussianEstimator::new_incarnation() {
 
 void StaticGaussianEstimator::forget() {
   new_incarnation();
-  for (std::vector<TrackedBelief>* beliefs : {&own_, &unsent_}) {
+  for (std::vector<TrackedBelief>* beliefs : {&own_, &unsent_, &last_fresh_}) {
     for (TrackedBelief& tracked : *beliefs) tracked = unknown();
   }
+  if (keeps_ledger() && !options_.exact) {
+    for (TrackedBelief& own : own_) own.ledger.mark_inexact();
+  }
+  last_said_.assign(own_.size(), Belief::unknown(options_.dimension));
   for (Neighbour& neighbour : neighbours_) neighbour = make_neighbour(neighbour.id);
 }
 

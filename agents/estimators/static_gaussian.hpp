@@ -19,13 +19,34 @@
 
 #include "agents/estimator.hpp"
 #include "filters/gaussian/fusion.hpp"
+#include "filters/gaussian/message_forms.hpp"
 
 namespace hearsay {
+
+/// What of a belief is said. Only rules that send nothing but their belief, and remember nothing
+/// that was said, may say less.
+enum class Content {
+  belief,     ///< all of it
+  diagonal,   ///< gaussian::diagonal_part(); nothing of a singular belief
+  quantised,  ///< gaussian::quantise(); nothing of a singular belief, and the ledger is inexact
+};
+
+/// True for rules whose content may be another than whole beliefs.
+bool can_say_less(gaussian::Rule rule);
+
+/// How messages under a rule and content are encoded.
+/// @throws BrokenInvariant if the content does not go with the rule.
+gaussian::MessageForm message_form(gaussian::Rule rule, Content content);
 
 class StaticGaussianEstimator final : public Estimator {
  public:
   struct Options {
     gaussian::Rule rule = gaussian::Rule::none;
+    double omega = 0.5;       ///< weight of the own belief under ci-fixed, (0, 1]
+    double correction = 1.0;  ///< γ of hybrid-consensus, ≥ 1
+    Content content = Content::belief;
+    int bits = 8;                             ///< of an entry that is quantised, 4 … 16
+    bool exact = true;                        ///< false: ledgers are inexact from the start
     int subjects = 1;                         ///< states estimated, ≥ 1
     int dimension = 2;                        ///< of each state, n
     std::optional<MotionModel> motion;        ///< nothing: states stand still
@@ -38,6 +59,7 @@ class StaticGaussianEstimator final : public Estimator {
 
   void advance(std::int64_t now) override;
   void measured(int subject, const gaussian::Belief& information, std::size_t measurement) override;
+  void about_to_talk(int degree) override;
   Speech speech(AgentId neighbour) override;
   void sent(AgentId neighbour) override;
   void heard(AgentId from, std::span<const std::byte> bytes, const Rider* rider) override;
@@ -46,7 +68,10 @@ class StaticGaussianEstimator final : public Estimator {
   void new_incarnation();
   void forget() override;
 
+  double news_nats() const override;
+
   gaussian::Rule rule() const { return options_.rule; }
+  gaussian::MessageForm form() const { return form_; }
   int subjects() const { return static_cast<int>(own_.size()); }
   const TrackedBelief& tracked(int subject) const override {
     return own_[static_cast<std::size_t>(subject)];
@@ -55,12 +80,20 @@ class StaticGaussianEstimator final : public Estimator {
   const Counts& counts() const override { return counts_; }
 
  private:
+  /// The newest that was heard of a subject and is not fused yet.
+  struct Held {
+    bool waits = false;
+    int degree = 0;
+    TrackedBelief said;
+    TrackedBelief fresh;  // only where the rule fuses it apart
+  };
   struct Neighbour {
     AgentId id;
     bool heard = false;
     std::uint32_t incarnation = 0;
     std::uint32_t count = 0;
     std::vector<TrackedBelief> memory;  // by subject; what the rule books as common
+    std::vector<Held> held;             // by subject; of rules that fuse all at once
   };
   Neighbour* find(AgentId id);
   Neighbour make_neighbour(AgentId id) const;
@@ -68,7 +101,19 @@ class StaticGaussianEstimator final : public Estimator {
   void predict(TrackedBelief& tracked, std::int64_t step) const;
   bool decode(std::span<const std::byte> bytes, gaussian::StampedMessage& message) const;
   bool outdated(Neighbour& from, const gaussian::Message& message) const;
+  bool put_into_words(std::size_t subject, const Neighbour* to, std::size_t at, LedgerRider* rider);
+  bool shorten(std::size_t at, LedgerRider* rider);
+  void hold(std::size_t subject, Neighbour& from, std::size_t at, const LedgerRider* rider);
+  void fuse_held(std::size_t subject, int degree);
+  void find_weights(std::size_t subject, int degree);
+  void add_weighted(TrackedBelief& own, double own_weight, double weight,
+                    const TrackedBelief& other) const;
+  void fuse_by_parts(std::size_t subject, std::size_t at, const Ledger* ledger);
+  void take(TrackedBelief& own, const gaussian::DirectionalFusion& fusion,
+            const gaussian::Belief& belief, const Ledger* ledger);
   void fuse(int subject, Neighbour& from, const gaussian::Belief& belief, const Ledger* ledger);
+  void fuse_older(int subject, Neighbour& from, const gaussian::Belief& belief,
+                  const Ledger* ledger);
   void fuse_by_direction(TrackedBelief& own, const gaussian::Belief& belief, const Ledger* ledger);
   void note_gain(const gaussian::Belief& before, const gaussian::Belief& received,
                  const gaussian::Belief& after);
@@ -76,8 +121,15 @@ class StaticGaussianEstimator final : public Estimator {
 
   Options options_;
   const gaussian::RuleInfo& rule_;
+  gaussian::MessageForm form_;
   std::vector<TrackedBelief> own_;
-  std::vector<TrackedBelief> unsent_;  // by subject; for rules that send local updates
+  std::vector<TrackedBelief> unsent_;        // by subject; what was measured since it last sent
+  std::vector<TrackedBelief> last_fresh_;    // by subject; unsent_ when it last sent, until fused
+  std::vector<gaussian::Belief> last_said_;  // by subject; own belief when it last sent
+  std::vector<Held*> to_fuse_;               // of fuse_held()
+  std::vector<const gaussian::Matrix*> matrices_;
+  std::vector<double> weights_;  // own first, then as in to_fuse_
+  int degree_ = 0;
   std::vector<Neighbour> neighbours_;
   TrackedBelief received_;  // a belief about a moving state, brought to the present
   std::int64_t stamp_ = 0;

@@ -39,6 +39,7 @@ inline T load(const std::byte* at) {
 class Writer {
  public:
   explicit Writer(std::byte* body) : body_(body) {}
+  void octet(std::uint8_t value) { body_[offset_++] = static_cast<std::byte>(value); }
   void u32(std::size_t value) {
     offset_ = aligned(offset_, 4);
     store(body_ + offset_, static_cast<std::uint32_t>(value));
@@ -59,6 +60,11 @@ class Writer {
 class Reader {
  public:
   explicit Reader(std::span<const std::byte> body) : body_(body) {}
+  bool octet(std::uint8_t& value) {
+    if (offset_ >= body_.size()) return false;
+    value = std::to_integer<std::uint8_t>(body_[offset_++]);
+    return true;
+  }
   bool u32(std::uint32_t& value) {
     const std::size_t at = aligned(offset_, 4);
     if (at + 4 > body_.size()) return false;
@@ -80,6 +86,11 @@ class Reader {
   /// Only after has_f64().
   std::int64_t i64() { return std::bit_cast<std::int64_t>(f64()); }
   std::size_t left() const { return body_.size() - offset_; }
+  /// The next `count` octets; only if there are so many left.
+  std::span<const std::byte> octets(std::size_t count) {
+    offset_ += count;
+    return body_.subspan(offset_ - count, count);
+  }
 
  private:
   std::span<const std::byte> body_;

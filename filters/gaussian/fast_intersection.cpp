@@ -1,6 +1,7 @@
 // Covariance intersection with a weight that needs no search.
 #include "filters/gaussian/belief.hpp"
 #include "filters/gaussian/intersection.hpp"
+#include "sim/kernel/error.hpp"
 #include "sim/math/functions.hpp"
 
 namespace hearsay::gaussian {
@@ -14,10 +15,11 @@ double share(const Matrix& omega_part, double log_determinant_of_whole) {
 
 }  // namespace
 
-Intersection intersect_half(const Matrix& omega_a, const Matrix& omega_b) {
+Intersection intersect_fixed(const Matrix& omega_a, const Matrix& omega_b, double omega) {
   require_equal_dimensions(omega_a, omega_b);
+  require(omega > 0.0 && omega <= 1.0, "intersect: a fixed weight must be in (0, 1]");
   const auto answer = decided(scale(omega_a), scale(omega_b), omega_a, omega_b);
-  return answer.value_or(Intersection{0.5, nullptr});
+  return answer.value_or(Intersection{omega, nullptr});
 }
 
 // ω = (1/tr P_a)/(1/tr P_a + 1/tr P_b).

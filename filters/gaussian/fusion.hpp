@@ -16,11 +16,20 @@
 //   ci-det              own               ω, 1−ω, 0 by max |Ω|    nothing
 //   ci-trace            own               ω, 1−ω, 0 by min tr Σ   nothing
 //   ci-half             own               ½, ½, 0                 nothing
+//   ci-fixed            own               ω, 1−ω, 0 as given      nothing
 //   ci-niehsen          own               ω ∝ 1/tr Σ              nothing
 //   ci-franken-huepper  own               ω from determinants     nothing
 //   most-certain        own               1, 0, 0 or 0, 1, 0      nothing
 //   inverse-ci          own               by direction            nothing
 //   ellipsoidal         own               by direction            nothing
+//
+// Some take in all that was heard since they last spoke at once (filters/gaussian/batch.hpp), and
+// one knows which part of a belief is independent (filters/gaussian/split.hpp):
+//
+//   ci-batch               own                     ω on the simplex by max |Ω|
+//   split-ci               own, its fresh part     by direction: only the rest is weighed by ω
+//   consensus-information  own, its degree         Metropolis weights
+//   hybrid-consensus       own, fresh, its degree  Metropolis weights, γ times those for the fresh
 #pragma once
 
 #include <array>
@@ -42,19 +51,27 @@ enum class Rule {
   ci_det,
   ci_trace,
   ci_half,
+  ci_fixed,
   ci_niehsen,
   ci_franken_huepper,
   most_certain,
   inverse_ci,
   ellipsoidal,
+  ci_batch,
+  split_ci,
+  consensus_information,
+  hybrid_consensus,
 };
 
 /// What a rule sends and to whom.
 enum class Sends {
   nothing,
-  belief,            ///< the whole belief, one broadcast
-  local_update,      ///< the information of its own measurements since it last sent, one broadcast
-  belief_less_heard  ///< a frame for each neighbour: the belief less what that neighbour said last
+  belief,             ///< the whole belief, one broadcast
+  local_update,       ///< the information of its own measurements since it last sent, one broadcast
+  belief_less_heard,  ///< a frame for each neighbour: the belief less what that neighbour said last
+  belief_and_fresh,   ///< the belief, and how much of it was measured since the last sending
+  belief_and_degree,  ///< the belief, and how many neighbours the sender has
+  hybrid,             ///< the belief, what was measured since the last sending, and the degree
 };
 
 /// What a rule keeps for each neighbour.
@@ -62,6 +79,15 @@ enum class Memory {
   nothing,
   last_exchanged,  ///< overwritten by what is sent to and by what is heard from the neighbour
   last_heard,      ///< replaced by each newer message of the neighbour
+  held,            ///< the newest message of the neighbour, until it is fused with all others
+};
+
+/// How a rule takes in what is heard.
+enum class Fuses {
+  by_weight,     ///< each message with coefficients()
+  by_direction,  ///< each message with fuse_by_direction()
+  by_parts,      ///< each message with fuse_split()
+  at_once,       ///< all that is held with weights of their own, when the agent is about to talk
 };
 
 /// What `hearsay list rules` says.
@@ -73,8 +99,9 @@ struct RuleInfo {
   std::string_view assumes;
   std::string_view conservative;  ///< when it is conservative
   std::string_view ledger;        ///< where the ledger's true covariance is exact
+  std::string_view cost;          ///< of one fusion of beliefs of dimension n
   std::string_view source;
-  bool directional = false;  ///< fuse_by_direction() instead of coefficients()
+  Fuses fuses = Fuses::by_weight;
 };
 std::span<const RuleInfo> rules();
 const RuleInfo& info(Rule rule);
@@ -91,11 +118,13 @@ struct Coefficients {
 };
 
 /// The coefficients of `rule` for these two beliefs of equal dimension. Every rule but `none` keeps
-/// its own belief, `skipped` = "overflow", if either belief is not finite.
-/// @throws BrokenInvariant if the dimensions differ, or for a directional rule.
-Coefficients coefficients(Rule rule, const Belief& own, const Belief& received);
+/// its own belief, `skipped` = "overflow", if either belief is not finite. `fixed_omega`, in (0,
+/// 1], is the weight of the own belief under ci-fixed; no other rule looks at it.
+/// @throws BrokenInvariant if the dimensions differ, or for a rule that does not fuse by weight.
+Coefficients coefficients(Rule rule, const Belief& own, const Belief& received,
+                          double fixed_omega = 0.5);
 
-/// What a directional rule makes of these two beliefs of equal dimension; `skipped` as above.
+/// What a rule by direction makes of these two beliefs of equal dimension; `skipped` as above.
 /// @throws BrokenInvariant if the dimensions differ, or for another rule.
 DirectionalFusion fuse_by_direction(Rule rule, const Belief& own, const Belief& received);
 
@@ -121,8 +150,8 @@ Intersection intersect_trace(const Matrix& omega_a, const Matrix& omega_b);
 // Weights without a search. Where one side is no belief or knows nothing the answer is that of the
 // two above; any ω keeps the result conservative.
 
-/// ω = ½.
-Intersection intersect_half(const Matrix& omega_a, const Matrix& omega_b);
+/// `omega`, in (0, 1], as it is.
+Intersection intersect_fixed(const Matrix& omega_a, const Matrix& omega_b, double omega);
 /// ω ∝ 1/tr Σ: by trace as above where one of them has none. Niehsen 2002.
 Intersection intersect_niehsen(const Matrix& omega_a, const Matrix& omega_b);
 /// ω = (|I| − |I−Ω_a| + |Ω_a|)/(2|I| + …) with I = Ω_a + Ω_b; by determinant as above where I is

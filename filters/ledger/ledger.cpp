@@ -185,6 +185,7 @@ Ledger& Ledger::operator=(const Ledger& other) {
     copy_with_room(other.drift_, drift_);
     dimension_ = other.dimension_;
     moves_ = other.moves_;
+    exact_ = other.exact_;
     copy_with_room(other.reach_, reach_);
   }
   return *this;
@@ -205,8 +206,14 @@ void Ledger::measured(std::size_t index) {
 
 void Ledger::combine(double a, double b, const Ledger& received, double c, const Ledger* common) {
   require(common != this, "Ledger::combine: a ledger cannot be its own common memory");
-  require(moves_ || (dimension_ == 0 && received.dimension_ == 0),
-          "Ledger::combine: a rule by direction and another cannot be mixed");
+  if (!moves_ && (dimension_ != 0 || received.dimension_ != 0)) {
+    require(c == 0.0 || common == nullptr,
+            "Ledger::combine: a rule by direction takes nothing away");
+    const int n = std::max(dimension_, received.dimension_);
+    const Matrix identity = Matrix::Identity(n, n);
+    return combine(Matrix(a * identity), Matrix(b * identity), received);
+  }
+  exact_ = exact_ && received.exact_;
   const std::size_t common_size = common != nullptr && c != 0.0 ? common->weights_.size() : 0;
   const std::size_t size = std::max({weights_.size(), received.weights_.size(), common_size});
   weights_.resize(size, 0.0);
@@ -243,6 +250,7 @@ void Ledger::clear() {
   drift_.clear();
   reach_.clear();
   if (!moves_) dimension_ = 0;
+  exact_ = true;
 }
 
 Multiplicity multiplicity(const Ledger& ledger) {
@@ -271,7 +279,7 @@ std::optional<Matrix> true_covariance(const Matrix& omega, const Ledger& ledger,
                                       const MeasurementBook& book) {
   require(omega.rows() == book.dimension(), "true_covariance: dimensions differ");
   const gaussian::Scaled scaled = gaussian::scale(omega);
-  if (!scaled.invertible()) return std::nullopt;
+  if (!ledger.exact() || !scaled.invertible()) return std::nullopt;
   double largest = 0.0;
   for (const double w : ledger.weights()) {
     if (!std::isfinite(w)) return std::nullopt;

@@ -83,7 +83,8 @@ class Ledger {
   void measured(std::size_t index);
   /// this = a·this + b·received − c·common; reach = union of this and received. `common` may be
   /// nullptr (nothing in common yet) and is not looked at for c = 0. No allocation once this ledger
-  /// has the capacity. @throws BrokenInvariant if `common` is this ledger itself.
+  /// has the capacity. With matrices on either side the result has matrices, and c must be 0.
+  /// @throws BrokenInvariant if `common` is this ledger itself.
   void combine(double a, double b, const Ledger& received, double c, const Ledger* common);
   /// this = G_a·this + G_b·received, weight by weight (n×n); reach as above.
   void combine(const gaussian::Matrix& own, const gaussian::Matrix& heard, const Ledger& received);
@@ -93,6 +94,10 @@ class Ledger {
   void predict(const gaussian::Matrix& F, const gaussian::Matrix& omega, std::size_t step);
   /// w_k ← other.w_k where where[k] ≠ 0; reach = union of both. Not with matrices.
   void replace(const Ledger& other, std::span<const std::uint8_t> where);
+  /// From here on weights do not say all: something was rounded, or was said because of its value.
+  /// Whatever this ledger is combined into is inexact, too.
+  void mark_inexact() { exact_ = false; }
+  bool exact() const { return exact_; }
   void clear();
 
   std::span<const double> weights() const { return weights_; }
@@ -113,6 +118,7 @@ class Ledger {
   std::vector<std::uint8_t> reach_;
   int dimension_ = 0;  // of the matrices; 0 without
   bool moves_ = false;
+  bool exact_ = true;
 };
 
 /// Over the measurements with |w| > 1e-12.
@@ -124,9 +130,9 @@ struct Multiplicity {
 };
 Multiplicity multiplicity(const Ledger& ledger);
 
-/// P_true of a belief with information matrix `omega` under `ledger` (n×n); nothing if Ω is
-/// singular or anything is not finite. Also for an indefinite Ω: the error of what its user
-/// computes.
+/// P_true of a belief with information matrix `omega` under `ledger` (n×n); nothing if the ledger
+/// is not exact, Ω is singular or anything is not finite. Also for an indefinite Ω: the error of
+/// what its user computes.
 std::optional<gaussian::Matrix> true_covariance(const gaussian::Matrix& omega, const Ledger& ledger,
                                                 const MeasurementBook& book);
 

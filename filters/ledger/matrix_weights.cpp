@@ -135,6 +135,7 @@ void Ledger::spread(int dimension) {
 void Ledger::combine(const Matrix& own, const Matrix& heard, const Ledger& received) {
   const auto n = static_cast<int>(own.rows());
   require(dimension_ == 0 || dimension_ == n, "Ledger::combine: dimensions differ");
+  exact_ = exact_ && received.exact_;
   if (moves_) {
     const std::size_t size = std::max(weights_.size(), received.weights_.size());
     add(trace(own) / n, weights_, trace(heard) / n, received.weights_, 0.0, {});

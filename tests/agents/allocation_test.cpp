@@ -44,7 +44,9 @@ std::size_t allocations_of(gaussian::Rule rule, bool ledger, bool measures) {
 
 TEST(Allocation, WithoutLedgerAFleetAllocatesNothingOnceItIsWarm) {
   using gaussian::Rule;
-  for (const Rule rule : {Rule::naive, Rule::channel, Rule::channel_robust, Rule::ci_det}) {
+  for (const Rule rule :
+       {Rule::naive, Rule::channel, Rule::channel_robust, Rule::ci_det, Rule::ci_batch,
+        Rule::split_ci, Rule::consensus_information, Rule::hybrid_consensus}) {
     EXPECT_EQ(allocations_of(rule, false, true), 0u) << gaussian::info(rule).name;
   }
 }

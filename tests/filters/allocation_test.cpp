@@ -63,7 +63,12 @@ TEST(Allocation, DoesNotHappenInFusionRules) {
     Belief singular = a;
     singular.omega.row(0).setZero();
     singular.omega.col(0).setZero();
+    BatchIntersection batch;
+    const Matrix* const both[] = {&a.omega, &b.omega};
+    batch.weights(both);
+    EXPECT_EQ(allocations_of([&] { batch.weights(both); }), 0u) << n;
     for (const RuleInfo& row : rules()) {
+      if (row.fuses == Fuses::at_once) continue;  // the storage is the batch's
       for (const auto& [x, y] : {std::pair(&a, &b), {&a, &singular}, {&singular, &singular}}) {
         EXPECT_EQ(allocations_of([&] { fused(row.rule, *x, *y, Belief::unknown(n)); }), 0u)
             << row.name << n;

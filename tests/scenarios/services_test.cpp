@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scenarios/run.hpp"
+#include "tests/scenarios/rule_names.hpp"
 #include "tests/scenarios/temp_files.hpp"
 
 namespace hearsay {
@@ -223,15 +224,14 @@ TEST_F(Services, RulesThatSpeakToNeighboursDoNotGoWithGossip) {
   EXPECT_EQ(error(seven, {"agents.estimator.fusion=channel"}),
             "--set agents.estimator.fusion=channel: agents[0].estimator.fusion: \"channel\" does "
             "not go with talk.service = \"store-and-forward\": it books what it says as known to "
-            "its neighbours, and to nobody else; allowed: none, naive, local-update, ci-det, "
-            "ci-trace, ci-half, ci-niehsen, ci-franken-huepper, most-certain, inverse-ci, "
-            "ellipsoidal");
+            "its neighbours, and to nobody else; allowed: " +
+                rules_but({"channel", "channel-robust", "split-ci"}));
   EXPECT_EQ(error(seven, {"agents.talk.service=blackboard"}),
             "s.toml:10: agents[0].estimator.fusion: \"local-update\" does not go with "
             "talk.service = \"blackboard\": it says only what is new since it last spoke, and on "
             "a blackboard the next words would take the place of words that are not yet read; "
-            "allowed: none, naive, ci-det, ci-trace, ci-half, ci-niehsen, ci-franken-huepper, "
-            "most-certain, inverse-ci, ellipsoidal");
+            "allowed: " +
+                rules_but({"channel", "channel-robust", "local-update", "split-ci"}));
   const std::string robust = error(seven, {"agents.estimator.fusion=channel-robust"});
   EXPECT_NE(robust.find("it addresses each neighbour"), std::string::npos) << robust;
 }

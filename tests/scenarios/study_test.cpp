@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "rule_names.hpp"
 #include "temp_files.hpp"
 
 namespace hearsay {
@@ -201,9 +202,8 @@ TEST_F(StudyLoader, AValueThatCannotBeIsFoundAtItsAxis) {
             "s.study.toml:3: radio.loss.probability = 1.5: must be between 0 and 1");
   EXPECT_EQ(error("[axes]\nx = { key = \"agents.estimator.fusion\", values = [\n\"naive\",\n"
                   "\"nave\"] }\n"),
-            "s.study.toml:5: agents[0].estimator.fusion = \"nave\": unknown; allowed: none, naive, "
-            "local-update, channel, channel-robust, ci-det, ci-trace, ci-half, ci-niehsen, "
-            "ci-franken-huepper, most-certain, inverse-ci, ellipsoidal; did you mean 'naive'?");
+            "s.study.toml:5: agents[0].estimator.fusion = \"nave\": unknown; allowed: " +
+                rules_but({}) + "; did you mean 'naive'?");
 }
 
 TEST_F(StudyLoader, ACombinationThatCannotBeNamesTheCell) {

@@ -29,6 +29,13 @@ const char* text_of(gaussian::Sends sends) {
       return "what it measured since it last sent, one broadcast";
     case Sends::belief_less_heard:
       return "to each neighbour its belief less what that one said last";
+    case Sends::belief_and_fresh:
+      return "its whole belief and how much of it was measured since it last sent, one broadcast";
+    case Sends::belief_and_degree:
+      return "its whole belief and how many neighbours it has, one broadcast";
+    case Sends::hybrid:
+      return "its whole belief, what it measured since it last sent, and how many neighbours it "
+             "has, one broadcast";
   }
   return "";
 }
@@ -41,6 +48,7 @@ Json rules() {
                    {"assumes", rule.assumes},
                    {"conservative", rule.conservative},
                    {"ledger", rule.ledger},
+                   {"cost", rule.cost},
                    {"source", rule.source}});
   }
   return out;

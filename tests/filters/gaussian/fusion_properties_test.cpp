@@ -32,11 +32,16 @@ constexpr Character characters[] = {
     {Rule::ci_det, true, true, true},
     {Rule::ci_trace, true, true, true},
     {Rule::ci_half, true, true, true},
+    {Rule::ci_fixed, true, false, true},  // but for ω = ½
     {Rule::ci_niehsen, true, true, true},
     {Rule::ci_franken_huepper, true, true, true},
     {Rule::most_certain, true, true, true},
     {Rule::inverse_ci, true, true, false},
     {Rule::ellipsoidal, true, true, false},
+    {Rule::ci_batch, true, true, true},
+    {Rule::split_ci, true, true, true},  // nothing fresh: split_test.cpp has the rest
+    {Rule::consensus_information, true, false, true},
+    {Rule::hybrid_consensus, true, false, true},  // nothing fresh
 };
 
 class EveryRule : public testing::TestWithParam<RuleInfo> {
@@ -167,12 +172,12 @@ TEST_P(EveryRule, TheLedgerSaysWhatTheBeliefSays) {
                                              random_vector(random, 1));
     ledgers[i].measured(book.add(z));
     beliefs[i] += z;
-    if (info(rule()).directional) {
-      const DirectionalFusion fusion = fuse_by_direction(rule(), beliefs[i], beliefs[j]);
-      beliefs[i] = fusion.belief;
-      ledgers[i].combine(fusion.own, fusion.received, ledgers[j]);
+    if (info(rule()).fuses != Fuses::by_weight) {
+      const Gains g = gains(rule(), beliefs[i], beliefs[j]);
+      beliefs[i] = fused(rule(), beliefs[i], beliefs[j], beliefs[k]);
+      ledgers[i].combine(Matrix(g.own), Matrix(g.received), ledgers[j]);
     } else {
-      const Coefficients c = coefficients(rule(), beliefs[i], beliefs[j]);
+      const Coefficients c = coefficients(rule(), beliefs[i], beliefs[j], weight_of_own);
       beliefs[i] = fused(c, beliefs[i], beliefs[j], beliefs[k]);
       ledgers[i].combine(c.own, c.received, ledgers[j], c.common, &ledgers[k]);
     }

@@ -56,6 +56,10 @@ TEST(FusionRules, CoefficientsAreThoseOfTheTable) {
   expect(Rule::channel_robust, 1, 1, 1);
   const double omega = intersect_det(first.omega, second.omega).omega;
   expect(Rule::ci_det, omega, 1 - omega, 0);
+  expect(Rule::ci_half, 0.5, 0.5, 0);
+  EXPECT_EQ(coefficients(Rule::ci_fixed, first, second, 0.75).own, 0.75);
+  EXPECT_EQ(coefficients(Rule::ci_fixed, first, second, 0.75).received, 0.25);
+  EXPECT_EQ(coefficients(Rule::ci_fixed, first, second, 1.0).received, 0.0);
 }
 
 TEST(FusionRules, AChannelRemovesWhatTwoBeliefsHaveInCommon) {
@@ -81,19 +85,31 @@ TEST(FusionRules, TheTableIsComplete) {
     names.insert(row.name);
     EXPECT_EQ(rule_by_name(row.name), row.rule);
     EXPECT_EQ(&info(row.rule), &row);
-    for (const std::string_view text : {row.assumes, row.conservative, row.ledger, row.source}) {
+    for (const std::string_view text :
+         {row.assumes, row.conservative, row.ledger, row.cost, row.source}) {
       EXPECT_FALSE(text.empty()) << row.name;
       EXPECT_EQ(text.find('\n'), std::string_view::npos) << row.name;
     }
     EXPECT_EQ(row.sends == Sends::nothing, row.rule == Rule::none);
   }
-  EXPECT_EQ(names, (std::set<std::string_view>{"none", "naive", "local-update", "channel",
-                                               "channel-robust", "ci-det", "ci-trace", "ci-half",
-                                               "ci-niehsen", "ci-franken-huepper", "most-certain",
-                                               "inverse-ci", "ellipsoidal"}));
+  EXPECT_EQ(names, (std::set<std::string_view>{
+                       "none", "naive", "local-update", "channel", "channel-robust", "ci-det",
+                       "ci-trace", "ci-half", "ci-fixed", "ci-niehsen", "ci-franken-huepper",
+                       "most-certain", "inverse-ci", "ellipsoidal", "ci-batch", "split-ci",
+                       "consensus-information", "hybrid-consensus"}));
   EXPECT_EQ(info(Rule::channel).memory, Memory::last_exchanged);
   EXPECT_EQ(info(Rule::channel_robust).memory, Memory::last_heard);
   EXPECT_EQ(info(Rule::channel_robust).sends, Sends::belief_less_heard);
+}
+
+TEST(FusionRules, AFixedWeightCanBeOneButNotNothing) {
+  for (const double omega : {0.0, -0.5, 1.5, std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_THROW(coefficients(Rule::ci_fixed, first, second, omega), BrokenInvariant) << omega;
+  }
+  // Whatever the weight, who knows nothing takes what it hears.
+  const Coefficients c = coefficients(Rule::ci_fixed, Belief::unknown(2), second, 1.0);
+  EXPECT_EQ(c.own, 0.0);
+  EXPECT_EQ(c.received, 1.0);
 }
 
 TEST(FusionRules, AnUnknownNameIsNoRule) {
@@ -108,8 +124,16 @@ TEST(FusionRules, AnOverflownBeliefIsNeverFused) {
   Belief undefined = first;
   undefined.omega(1, 1) = std::numeric_limits<double>::quiet_NaN();
   for (const RuleInfo& row : rules()) {
-    if (row.rule == Rule::none) continue;
-    if (row.directional) {
+    if (row.rule == Rule::none || row.fuses == Fuses::at_once) continue;
+    if (row.fuses == Fuses::by_parts) {
+      const Matrix nothing = Matrix::Zero(2, 2);
+      for (const Belief& bad : {overflown, undefined}) {
+        EXPECT_STREQ(fuse_split(first, nothing, bad, nothing).skipped, "overflow");
+        EXPECT_STREQ(fuse_split(bad, nothing, first, nothing).skipped, "overflow");
+      }
+      continue;
+    }
+    if (row.fuses == Fuses::by_direction) {
       for (const Belief& bad : {overflown, undefined}) {
         EXPECT_STREQ(fuse_by_direction(row.rule, first, bad).skipped, "overflow") << row.name;
         EXPECT_EQ(fuse_by_direction(row.rule, first, bad).belief.omega, first.omega);
@@ -133,9 +157,10 @@ TEST(FusionRules, BeliefsOfDifferentDimensionsAreRefused) {
   for (const RuleInfo& row : rules()) {
     EXPECT_THROW(coefficients(row.rule, first, Belief::unknown(3)), BrokenInvariant) << row.name;
     EXPECT_THROW(fuse_by_direction(row.rule, first, Belief::unknown(3)), BrokenInvariant);
-    if (row.directional) {
+    if (row.fuses != Fuses::by_weight) {
       EXPECT_THROW(coefficients(row.rule, first, second), BrokenInvariant) << row.name;
-    } else {
+    }
+    if (row.fuses != Fuses::by_direction) {
       EXPECT_THROW(fuse_by_direction(row.rule, first, second), BrokenInvariant) << row.name;
     }
   }

@@ -5,8 +5,10 @@
 #include <Eigen/QR>
 #include <initializer_list>
 
+#include "filters/gaussian/batch.hpp"
 #include "filters/gaussian/belief.hpp"
 #include "filters/gaussian/fusion.hpp"
+#include "filters/gaussian/split.hpp"
 #include "sim/kernel/random.hpp"
 
 namespace hearsay::gaussian {
@@ -76,6 +78,8 @@ inline Belief random_belief(Stream& random, int n) {
   return belief;
 }
 
+inline constexpr double weight_of_own = 0.3;  ///< ω of ci-fixed
+
 /// What an agent makes of a rule's coefficients.
 inline Belief fused(const Coefficients& c, const Belief& own, const Belief& received,
                     const Belief& common) {
@@ -92,24 +96,52 @@ inline Belief fused(const Coefficients& c, const Belief& own, const Belief& rece
   return sum;
 }
 
-/// The same for any rule.
-inline Belief fused(Rule rule, const Belief& own, const Belief& received, const Belief& common) {
-  if (info(rule).directional) return fuse_by_direction(rule, own, received).belief;
-  return fused(coefficients(rule, own, received), own, received, common);
+/// Weight of the own belief for a rule that fuses all at once; consensus with two neighbours each.
+inline double weight_at_once(Rule rule, const Belief& own, const Belief& received) {
+  if (rule != Rule::ci_batch) return 1.0 - metropolis_weight(2, 2);
+  const Matrix* const both[] = {&own.omega, &received.omega};
+  return BatchIntersection().weights(both)[0];
 }
 
-/// What multiplies the two information vectors.
+/// What multiplies the two information vectors. Nothing fresh for the rules that care.
 struct Gains {
   Eigen::MatrixXd own, received;
 };
 inline Gains gains(Rule rule, const Belief& own, const Belief& received) {
-  if (info(rule).directional) {
-    const DirectionalFusion fusion = fuse_by_direction(rule, own, received);
-    return {fusion.own, fusion.received};
+  const int n = own.dimension();
+  const Matrix identity = Matrix::Identity(n, n), nothing = Matrix::Zero(n, n);
+  switch (info(rule).fuses) {
+    case Fuses::by_direction: {
+      const DirectionalFusion fusion = fuse_by_direction(rule, own, received);
+      return {fusion.own, fusion.received};
+    }
+    case Fuses::by_parts: {
+      const SplitFusion fusion = fuse_split(own, nothing, received, nothing);
+      return {fusion.own, fusion.received};
+    }
+    case Fuses::at_once: {
+      const double weight = weight_at_once(rule, own, received);
+      return {weight * identity, (1.0 - weight) * identity};
+    }
+    case Fuses::by_weight:
+      break;
   }
-  const Coefficients c = coefficients(rule, own, received);
-  const Matrix identity = Matrix::Identity(own.dimension(), own.dimension());
+  const Coefficients c = coefficients(rule, own, received, weight_of_own);
   return {c.own * identity, c.received * identity};
+}
+
+/// The fused belief of any rule.
+inline Belief fused(Rule rule, const Belief& own, const Belief& received, const Belief& common) {
+  if (info(rule).fuses == Fuses::by_direction) return fuse_by_direction(rule, own, received).belief;
+  if (info(rule).fuses == Fuses::by_parts) {
+    const Matrix nothing = Matrix::Zero(own.dimension(), own.dimension());
+    return fuse_split(own, nothing, received, nothing).belief;
+  }
+  if (info(rule).fuses == Fuses::at_once) {
+    const double weight = weight_at_once(rule, own, received);
+    return fused({weight, 1.0 - weight, 0.0, nullptr}, own, received, common);
+  }
+  return fused(coefficients(rule, own, received, weight_of_own), own, received, common);
 }
 
 inline double relative(const Eigen::MatrixXd& value, const Eigen::MatrixXd& reference) {

@@ -54,7 +54,7 @@ class Pair {
     const int other = 1 - who;
     Matrix own, received;
     Belief fused;
-    if (info(rule).directional) {
+    if (info(rule).fuses == Fuses::by_direction) {
       const DirectionalFusion f = fuse_by_direction(rule, beliefs_[who], beliefs_[other]);
       own = f.own;
       received = f.received;

@@ -112,10 +112,12 @@ class Verbs(Bed):
         rules = json.loads(self.good("list", "rules", "--json"))["rules"]
         names = [rule["name"] for rule in rules]
         self.assertEqual(names, ["none", "naive", "local-update", "channel", "channel-robust", "ci-det",
-                                 "ci-trace", "ci-half", "ci-niehsen", "ci-franken-huepper",
-                                 "most-certain", "inverse-ci", "ellipsoidal"])
+                                 "ci-trace", "ci-half", "ci-fixed", "ci-niehsen", "ci-franken-huepper",
+                                 "most-certain", "inverse-ci", "ellipsoidal", "ci-batch", "split-ci",
+                                 "consensus-information", "hybrid-consensus"])
         for rule in rules:
             self.assertTrue(rule["sends"] and rule["assumes"] and rule["conservative"] and rule["source"])
+            self.assertTrue(rule["cost"])
         self.assertIn("rumour/rumour.study.toml", self.good("list", "scenarios"))
         radios = self.good("list", "radios")
         self.assertIn("radio.rate_bps: number, bit/s, > 0, default 1e+06: bits a second", radios)

@@ -15,7 +15,9 @@ inline std::vector<std::string> tracker_fusion_names() {
   std::vector<std::string> names;
   for (const auto& rule : gaussian::rules()) {
     const bool fits =
-        rule.sends == gaussian::Sends::nothing || rule.sends == gaussian::Sends::belief;
+        (rule.sends == gaussian::Sends::nothing || rule.sends == gaussian::Sends::belief) &&
+        (rule.fuses == gaussian::Fuses::by_weight || rule.fuses == gaussian::Fuses::by_direction) &&
+        rule.rule != gaussian::Rule::ci_fixed;  // trackers have no key for its weight
     if (fits && rule.memory == gaussian::Memory::nothing) names.emplace_back(rule.name);
   }
   return names;

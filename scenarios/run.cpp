@@ -263,7 +263,8 @@ std::unique_ptr<Agent> Run::make_estimator(AgentId id) {
 
 std::unique_ptr<Agent> Run::make_tracker(AgentId id) {
   const auto i = static_cast<std::size_t>(id);
-  TrackerAgent::Options options = tracker_options(*prepared_->specs[i], targets_);
+  const AgentSpec& spec = *prepared_->specs[i];
+  TrackerAgent::Options options = tracker_options(spec, targets_);
   if (spec.talk.policy == "periodic") options.talk = talk_of(id);
   auto agent = std::make_unique<TrackerAgent>(*contexts_[i], std::move(options));
   track_witness_->watch(id, agent->tracker());

@@ -269,7 +269,7 @@ void Tracker::follow(const LabelTable::Decision& decision, const std::optional<B
 bool Tracker::fuse(Track& track, const Belief& received) {
   Belief fused = track.belief;
   const char* skipped = nullptr;
-  if (gaussian::info(options_.rule).directional) {
+  if (gaussian::info(options_.rule).fuses == gaussian::Fuses::by_direction) {
     auto fusion = gaussian::fuse_by_direction(options_.rule, track.belief, received);
     fused = fusion.belief;
     skipped = fusion.skipped;

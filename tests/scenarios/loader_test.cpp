@@ -196,8 +196,7 @@ TEST_F(Loader, NumbersThatAreNoneAreRefused) {
 
 TEST_F(Loader, AnUnknownChoiceIsAnsweredWithTheAllowedOnes) {
   EXPECT_EQ(error_with("ci-det", "ci-dett"),
-            "s.toml:15: agents[0].estimator.fusion = \"ci-dett\": unknown; allowed: " +
-                rules_but({}) + "; did you mean 'ci-det'?");
+            "s.toml:15: agents[0].estimator.fusion = \"ci-dett\": unknown; did you mean 'ci-det'?");
   EXPECT_EQ(error_with("\"ring\"", "\"moebius\""),
             "s.toml:8: radio.topology = \"moebius\": unknown; allowed: line, ring, star, full, "
             "binary-tree, grid, erdos-renyi, small-world, random-geometric, edges, contacts, disk, "

@@ -200,10 +200,10 @@ TEST_F(StudyLoader, AxesDoNotWipeOutOneAnother) {
 TEST_F(StudyLoader, AValueThatCannotBeIsFoundAtItsAxis) {
   EXPECT_EQ(error("[axes]\nloss = { key = \"radio.loss.probability\", values = [0.1, 1.5] }\n"),
             "s.study.toml:3: radio.loss.probability = 1.5: must be between 0 and 1");
-  EXPECT_EQ(error("[axes]\nx = { key = \"agents.estimator.fusion\", values = [\n\"naive\",\n"
-                  "\"nave\"] }\n"),
-            "s.study.toml:5: agents[0].estimator.fusion = \"nave\": unknown; allowed: " +
-                rules_but({}) + "; did you mean 'naive'?");
+  EXPECT_EQ(
+      error("[axes]\nx = { key = \"agents.estimator.fusion\", values = [\n\"naive\",\n"
+            "\"nave\"] }\n"),
+      "s.study.toml:5: agents[0].estimator.fusion = \"nave\": unknown; did you mean 'naive'?");
 }
 
 TEST_F(StudyLoader, ACombinationThatCannotBeNamesTheCell) {

@@ -102,8 +102,15 @@ std::optional<double> Reader::value_of_agent(std::size_t run, AgentId agent, con
 }
 
 MetricRule metric_rule(const std::string& name, bool chi2_band) {
-  static constexpr std::array<std::string_view, 4> root_mean_squares = {
-      "rms_error_m", "claimed_sigma_m", "true_sigma_m", "final_claimed_sigma_m"};
+  static constexpr std::array<std::string_view, 8> root_mean_squares = {
+      "rms_error_m",
+      "claimed_sigma_m",
+      "true_sigma_m",
+      "final_claimed_sigma_m",
+      "velocity_error_m_per_s",
+      "claimed_velocity_sigma_m_per_s",
+      "x_error_m",
+      "y_error_m"};
   MetricRule rule{.name = name, .stored = name == "anees" ? "nees" : name};
   rule.rms = std::find(root_mean_squares.begin(), root_mean_squares.end(), name) !=
              root_mean_squares.end();

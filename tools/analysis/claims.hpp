@@ -15,7 +15,8 @@
 // Over repetitions, `statistic`:
 //   auto      root mean square for errors (rms_error_m, velocity_error_m_per_s, x_error_m,
 //             y_error_m) and standard deviations (claimed_sigma_m, true_sigma_m,
-//             final_claimed_sigma_m, claimed_velocity_sigma_m_per_s); median for agree_again_s; else the mean
+//             final_claimed_sigma_m, claimed_velocity_sigma_m_per_s); median for agree_again_s;
+//             else the mean
 //   mean, rms
 //   median    with an interval between order statistics
 //   max, min  an exact statement on the worst repetition, without an interval

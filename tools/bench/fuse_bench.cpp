@@ -1,5 +1,5 @@
-// Covariance intersection of two beliefs about a 4-D state, minimum determinant: find ω, then
-// Ω = ωΩ_a + (1−ω)Ω_b and ξ likewise. An item is one fusion, of 256 random pairs in turn.
+// Covariance intersection of two beliefs about a 4-D or 6-D state, minimum determinant: find ω,
+// then Ω = ωΩ_a + (1−ω)Ω_b and ξ likewise. An item is one fusion, of 256 random pairs in turn.
 //
 // floor/fuse: as a user of Eigen would write it, with matrices of dynamic size on the heap:
 // Cholesky of Ω_a, eigenvalues of L⁻¹Ω_bL⁻ᵀ, Newton for ω. ours/fuse: coefficients() of the rule
@@ -36,7 +36,6 @@ using hearsay::gaussian::Belief;
 using hearsay::gaussian::Coefficients;
 using hearsay::gaussian::Rule;
 
-constexpr int n = 4;
 constexpr int pairs = 256;  // a power of two; both sides' pairs stay in the caches
 
 struct HeapBelief {
@@ -45,7 +44,7 @@ struct HeapBelief {
 };
 
 /// Eigenvalues over about two decades, in random directions.
-HeapBelief random_belief(hearsay::Stream& random) {
+HeapBelief random_belief(hearsay::Stream& random, int n) {
   const auto normal = [&random] { return random.normal(); };
   const Eigen::MatrixXd g = Eigen::MatrixXd::NullaryExpr(n, n, normal);
   const Eigen::MatrixXd q = Eigen::HouseholderQR<Eigen::MatrixXd>(g).householderQ();
@@ -55,10 +54,12 @@ HeapBelief random_belief(hearsay::Stream& random) {
   return {0.5 * (m + m.transpose()), Eigen::VectorXd::NullaryExpr(n, normal)};
 }
 
-std::vector<HeapBelief> random_beliefs(std::uint64_t side) {
+std::vector<HeapBelief> random_beliefs(std::uint64_t side, std::int64_t n) {
   hearsay::Stream random(side, hearsay::Purpose("fuse"), hearsay::Entity::agent(0));
   std::vector<HeapBelief> beliefs;
-  for (int i = 0; i < pairs; ++i) beliefs.push_back(random_belief(random));
+  for (int i = 0; i < pairs; ++i) {
+    beliefs.push_back(random_belief(random, static_cast<int>(n)));
+  }
   return beliefs;
 }
 
@@ -127,8 +128,8 @@ std::vector<Belief> inline_beliefs(const std::vector<HeapBelief>& beliefs) {
 }
 
 void floor_fuse(benchmark::State& state) {
-  const std::vector<HeapBelief> a = random_beliefs(1);
-  const std::vector<HeapBelief> b = random_beliefs(2);
+  const std::vector<HeapBelief> a = random_beliefs(1, state.range(0));
+  const std::vector<HeapBelief> b = random_beliefs(2, state.range(0));
   std::size_t i = 0;
   for (auto _ : state) {
     benchmark::DoNotOptimize(fuse(a[i], b[i]));
@@ -157,8 +158,8 @@ const char* what_is_wrong(const std::vector<HeapBelief>& a, const std::vector<He
 }
 
 void our_fuse(benchmark::State& state) {
-  const std::vector<HeapBelief> a = random_beliefs(1);
-  const std::vector<HeapBelief> b = random_beliefs(2);
+  const std::vector<HeapBelief> a = random_beliefs(1, state.range(0));
+  const std::vector<HeapBelief> b = random_beliefs(2, state.range(0));
   const std::vector<Belief> own = inline_beliefs(a);
   const std::vector<Belief> received = inline_beliefs(b);
   if (const char* wrong = what_is_wrong(a, b, own, received)) {
@@ -173,7 +174,7 @@ void our_fuse(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations());
 }
 
-BENCHMARK(floor_fuse)->Name("floor/fuse/4");
-BENCHMARK(our_fuse)->Name("ours/fuse/4");
+BENCHMARK(floor_fuse)->Name("floor/fuse")->Arg(4)->Arg(6);
+BENCHMARK(our_fuse)->Name("ours/fuse")->Arg(4)->Arg(6);
 
 }  // namespace

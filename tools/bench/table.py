@@ -17,11 +17,14 @@ GOALS = {
     "moving/100": None, "moving/1000": None, "moving/10000": None, "moving/100000": 0.5,
     "fading/100": None, "fading/1000": None, "fading/10000": None,
     "sensing/100": None, "sensing/1000": None, "sensing/10000": None,
-    "fuse/4": 3.0,
+    "fuse/4": 3.0, "fuse/6": None,
+    "add/20": None, "add/100": None, "add/1000": None,
+    "means/20": None, "means/100": None, "means/1000": None,
+    "intersect/20": None, "intersect/100": None, "intersect/1000": None,
     "log": 1.0,
 }
 # Measured against another workload's floor: what a time-out an event costs beside none at all.
-FLOOR_OF = {"timeouts": "hold", "moving": "beacon", "fading": "beacon", "sensing": "beacon"}
+FLOOR_OF = {"intersect": "means", "timeouts": "hold", "moving": "beacon", "fading": "beacon", "sensing": "beacon"}
 COUNTERS = {"bytes_per_process": "bytes a process", "bytes_per_agent": "bytes an agent", "bytes/row": "bytes a row"}
 RATES = ("items_per_second", "deliveries_per_s", "rows/s")
 
@@ -65,7 +68,7 @@ def main():
     compiler = subprocess.run(["g++", "--version"], capture_output=True, text=True).stdout.split("\n")[0]
     print("# Benchmarks\n")
     print(f"{processor()}, {compiler}, release build. Median of five interleaved repetitions, in millions "
-          "a second (events, wake-ups, deliveries, fusions, rows) of CPU time (log: of wall time). The "
+          "a second (events, wake-ups, deliveries, fusions, trajectories, rows) of CPU time (log: of wall time). The "
           "ratio is ours to a floor in the same binary and run: plain arrays and std::priority_queue, "
           "dynamic-size Eigen (fuse), bare prepared inserts (log). Written by `tools/bench/run`.\n")
     print("| workload | floor | ours | ratio | goal | |")
@@ -90,7 +93,9 @@ def main():
           "added, beside the same floor, which does without: Gauss-Markov motion at 10 m/s, log-distance "
           "with shadowing where every reception is drawn from its SNR, carrier sense with back-off and "
           "collisions (60 s each, 100,000 moving radios for 10 s; what those hold is within 2 GiB, or "
-          "nothing is written); `fuse` is covariance intersection with optimal ω in 4-D; `log` writes "
+          "nothing is written); `fuse` is covariance intersection with optimal ω in 4-D and 6-D; `add`, `means` and `intersect` "
+          "are trajectories of 20, 100 and 1000 steps in 6-D: one added to another, all means, and "
+          "intersection of minimum determinant, beside the floor of means; `log` writes "
           "rows into SQLite.")
 
 

@@ -183,10 +183,6 @@ void SharedTrajectories::forget() {
   }
 }
 
-const gaussian::Trajectory& SharedTrajectories::trajectory(int subject) const {
-  return tracks_[static_cast<std::size_t>(subject)].filter.belief();
-}
-
 const TrackedBelief& SharedTrajectories::tracked(int subject) const {
   const auto s = static_cast<std::size_t>(subject);
   const Track& track = tracks_[s];

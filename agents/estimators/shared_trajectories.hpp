@@ -45,9 +45,6 @@ class SharedTrajectories final : public Estimator {
   const TrackedBelief& tracked(int subject) const override;
   const EstimatorCounts& counts() const override { return counts_; }
 
-  /// The belief over the whole window. Valid until anything else is called.
-  const gaussian::Trajectory& trajectory(int subject) const;
-
  private:
   struct Track {
     mutable TrajectoryEstimator filter;

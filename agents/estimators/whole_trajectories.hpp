@@ -40,11 +40,6 @@ class WholeTrajectories final : public Estimator {
   const TrackedBelief& tracked(int subject) const override;
   const EstimatorCounts& counts() const override { return counts_; }
 
-  /// The belief over the whole window. Valid until anything else is called.
-  const gaussian::Trajectory& trajectory(int subject) const {
-    return own_[static_cast<std::size_t>(subject)].trajectory;
-  }
-
  private:
   struct Track {
     gaussian::Trajectory trajectory;

@@ -28,6 +28,7 @@ class Checker {
     check_estimators(file_);
     check_sensors(file_);
     check_trackers(file_);
+    check_localizers(file_);
     check_traffic(file_);
     check_radio(file_);
     check_agreement();

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "filters/gaussian/fusion.hpp"
+#include "scenarios/describe_localizer.hpp"
 #include "scenarios/describe_motion.hpp"
 #include "scenarios/describe_radio.hpp"
 #include "scenarios/describe_tracker.hpp"
@@ -46,6 +47,10 @@ void describe(V& v, LogSpec& s) {
           "where the data set lies; relative to the scenario file, or with --set as given");
   v.field("truth_gap_max_s", s.truth_gap_max_s, time_span(false),
           "measurements in wider gaps of the truth are skipped and counted");
+  v.field(
+      "subjects", s.subjects, one_of({"landmarks", "robots"}),
+      "what estimators believe in: what stands still, or each other, who move (then world.step_s "
+      "is needed)");
 }
 
 template <class V>
@@ -176,6 +181,7 @@ void describe(V& v, AgentSpec& s) {
   v.table("sensor", s.sensor, "what it measures");
   v.table("estimator", s.estimator, "what it believes");
   v.table("tracker", s.tracker, "how an agent of kind tracker finds and keeps targets");
+  v.table("localizer", s.localizer, "how a robot of kind localizer finds its own pose");
   v.table("talk", s.talk, "what it says when");
   v.table("traffic", s.traffic, "what a source sends; default: nothing, it listens");
   v.field("parameters", s.parameters, anything(), "numbers for agents of a user's program");

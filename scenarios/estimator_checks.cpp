@@ -54,7 +54,9 @@ void EstimatorChecker::check_step() const {
   if (!world_.step_s) return;
   const KeyPath world = top_["world"];
   const KeyPath path = world["step_s"];
-  if (world_.log) file_.fail(path, "not with [world.log], whose landmarks stand still");
+  if (world_.log && world_.log->subjects == "landmarks") {
+    file_.fail(path, "not with the landmarks of [world.log], which stand still");
+  }
   if (file_.scenario.duration_s.value_or(0.0) / *world_.step_s > steps_max) {
     file_.fail(path, "the run would have more than 1000000 steps");
   }
@@ -72,6 +74,11 @@ void EstimatorChecker::check_keys(const EstimatorSpec& estimator, const KeyPath&
 }
 
 void EstimatorChecker::check_still(const KeyPath& path) const {
+  if (world_.log && world_.log->subjects == "robots") {
+    file_.fail(path["kind"],
+               "\"static-gaussian\" believes that all stands still, but the robots of [world.log] "
+               "move; take \"moving-gaussian\" or \"trajectory-gaussian\"");
+  }
   for (const TargetSpec& target : world_.targets) {
     if (!target.motion) continue;
     file_.fail(path["kind"], "\"static-gaussian\" believes that targets stand still, but \"" +
@@ -90,18 +97,22 @@ void EstimatorChecker::require_multiple(const KeyPath& path, double value_s) con
 void EstimatorChecker::check_moving(const AgentSpec& agent, const KeyPath& path) const {
   const KeyPath estimator = path["estimator"];
   const std::string kind = "kind \"" + agent.estimator.kind + "\"";
+  if (world_.log && world_.log->subjects == "landmarks") {
+    file_.fail(estimator["kind"], kind +
+                                      " does not go with the landmarks of [world.log], which "
+                                      "stand still; take world.log.subjects = \"robots\"");
+  }
   if (!world_.step_s) file_.fail(estimator["kind"], kind + " needs world.step_s");
   if (!agent.estimator.acceleration_psd_m2_per_s3) {
     file_.fail(estimator, kind +
                               " needs acceleration_psd_m2_per_s3: how much it expects targets "
                               "to turn and change speed");
   }
-  if (agent.sensor.kind == "log") {
-    file_.fail(estimator["kind"], kind + " does not go with a sensor of kind \"log\"");
-  }
   const KeyPath sensor = path["sensor"];
-  require_multiple(sensor["period_s"], agent.sensor.period_s);
-  require_multiple(sensor["start_s"], agent.sensor.start_s);
+  if (agent.sensor.kind != "log") {  // what was logged comes when it comes
+    require_multiple(sensor["period_s"], agent.sensor.period_s);
+    require_multiple(sensor["start_s"], agent.sensor.start_s);
+  }
   if (agent.estimator.kind == "trajectory-gaussian") check_window(agent.estimator, estimator);
 }
 

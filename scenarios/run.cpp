@@ -5,6 +5,8 @@
 
 #include "scenarios/channel.hpp"
 #include "scenarios/estimators.hpp"
+#include "scenarios/localizers.hpp"
+#include "scenarios/logs.hpp"
 #include "scenarios/network.hpp"
 #include "scenarios/sensors.hpp"
 #include "scenarios/targets.hpp"
@@ -15,14 +17,6 @@
 namespace hearsay {
 namespace {
 
-gaussian::Belief information_of(const mrclam::Sighting& sighting, const SensorSpec& spec) {
-  const gaussian::PositionMeasurement measured = gaussian::range_bearing_to_position(
-      {sighting.pose.x_m, sighting.pose.y_m, sighting.pose.heading_rad}, sighting.range_m,
-      sighting.bearing_rad, range_bearing_noise_of(spec));
-  const gaussian::Matrix identity = gaussian::Matrix::Identity(2, 2);
-  return gaussian::measurement_information(identity, measured.S, measured.z);
-}
-
 std::vector<Metric> metrics_of(const RecordSpec& record) {
   std::vector<Metric> wanted;
   for (int m = 0; m < series_metric_count; ++m) {
@@ -32,25 +26,6 @@ std::vector<Metric> metrics_of(const RecordSpec& record) {
     }
   }
   return wanted;
-}
-
-void prepare_log(PreparedScenario& prepared, LogCache& logs) {
-  const Scenario& scenario = prepared.scenario;
-  const LogSpec& spec = *scenario.world.log;
-  prepared.log = logs.get(spec.directory, static_cast<int>(prepared.specs.size()),
-                          Duration::seconds(spec.truth_gap_max_s));
-  for (const mrclam::Landmark& landmark : prepared.log->landmarks) {
-    prepared.subjects.push_back(
-        {"landmark" + std::to_string(landmark.subject), {landmark.x_m, landmark.y_m}});
-  }
-  for (std::size_t i = 0; i < prepared.specs.size(); ++i) {
-    for (const mrclam::Sighting& sighting : prepared.log->robots[i].sightings) {
-      prepared.observations[i].push_back(
-          {.time = sighting.time,
-           .subject = sighting.landmark,
-           .information = information_of(sighting, prepared.specs[i]->sensor)});
-    }
-  }
 }
 
 void require_subjects(const PreparedScenario& prepared) {
@@ -86,19 +61,6 @@ KnownNames known_names(const Catalog& catalog) {
   return names;
 }
 
-std::shared_ptr<const mrclam::Dataset> LogCache::get(const std::string& directory, int robots,
-                                                     Duration truth_gap_max) {
-  const std::scoped_lock lock(mutex_);
-  const std::string key =
-      directory + "|" + std::to_string(robots) + "|" + std::to_string(truth_gap_max.nanoseconds());
-  std::shared_ptr<const mrclam::Dataset>& dataset = datasets_[key];
-  if (!dataset) {
-    dataset =
-        std::make_shared<const mrclam::Dataset>(mrclam::load(directory, robots, truth_gap_max));
-  }
-  return dataset;
-}
-
 std::shared_ptr<const PreparedScenario> prepare(Scenario scenario, const Catalog&, LogCache& logs) {
   auto prepared = std::make_shared<PreparedScenario>();
   prepared->scenario = std::move(scenario);
@@ -122,9 +84,9 @@ std::shared_ptr<const PreparedScenario> prepare(Scenario scenario, const Catalog
     prepared->sensors.push_back(sensors_of(*prepared->specs[i], s.world, prepared->places[i]));
   }
   prepared->motion = motion_model_of(s);
+  if (s.duration_s) prepared->end = Time::at(Duration::seconds(*s.duration_s));
   if (s.world.log) prepare_log(*prepared, logs);
   require_subjects(*prepared);
-  prepared->end = Time::at(s.duration_s ? Duration::seconds(*s.duration_s) : prepared->log->span);
   return prepared;
 }
 
@@ -179,7 +141,7 @@ void Run::build_agents(const Catalog& catalog) {
   if (watched) {
     record.agent(central_agent, "central", "central");
     subjects_ = prepared_->subjects;
-    if (prepared_->motion) {
+    if (prepared_->motion && !prepared_->log) {
       put_in_motion(subjects_, scenario, *prepared_->motion, prepared_->end, simulation_.seed());
     }
     witness_ = std::make_unique<Witness>(
@@ -196,6 +158,7 @@ void Run::build_agents(const Catalog& catalog) {
     targets_ = target_truths_of(scenario, prepared_->end, simulation_.seed());
     track_witness_ = make_track_witness(scenario, simulation_, targets_);
   }
+  if (has_localizers(scenario)) pose_witness_ = make_pose_witness(*prepared_, simulation_);
   for (std::size_t i = 0; i < prepared_->specs.size(); ++i) {
     const AgentSpec& spec = *prepared_->specs[i];
     const auto id = static_cast<AgentId>(i);
@@ -229,6 +192,7 @@ std::unique_ptr<Agent> Run::make_agent(AgentId id, const Catalog& catalog) {
   if (own != catalog.agents().end()) return own->second.make(*contexts_[i]);
   if (spec.kind == "estimator") return make_estimator(id);
   if (spec.kind == "tracker") return make_tracker(id);
+  if (spec.kind == "localizer") return make_localizer(id);
   std::optional<SourceTraffic> traffic;
   if (spec.traffic) traffic = traffic_of(*spec.traffic, id, simulation_.seed());
   return std::make_unique<SourceAgent>(*contexts_[i], traffic);
@@ -271,6 +235,15 @@ std::unique_ptr<Agent> Run::make_tracker(AgentId id) {
   return agent;
 }
 
+std::unique_ptr<Agent> Run::make_localizer(AgentId id) {
+  const auto i = static_cast<std::size_t>(id);
+  const AgentSpec& spec = *prepared_->specs[i];
+  LocalizerAgent::Options options =
+      localizer_options(spec, prepared_->journeys[i], prepared_->landmarks);
+  if (spec.talk.policy == "periodic") options.talk = talk_of(id);
+  return std::make_unique<LocalizerAgent>(*contexts_[i], *pose_witness_, std::move(options));
+}
+
 PeriodicTalk Run::talk_of(AgentId id) const {
   const TalkSpec& talk = prepared_->specs[static_cast<std::size_t>(id)]->talk;
   const Duration period = Duration::seconds(talk.period_s);
@@ -285,6 +258,7 @@ RunEnd Run::run() {
   try {
     if (witness_) witness_->start();
     if (track_witness_) track_witness_->start();
+    if (pose_witness_) pose_witness_->start();
     if (life_) life_->start();
     for (std::size_t i = 0; i < agents_.size(); ++i) {
       simulation_.acting_for(static_cast<AgentId>(i));
@@ -316,16 +290,18 @@ void Run::keep_record_only() {
   movement_.reset();
   witness_.reset();
   track_witness_.reset();
+  pose_witness_.reset();
 }
 
 void Run::leave_final_values() {
   for (const auto& agent : agents_) agent->finish();
   if (witness_) witness_->finish();
   if (track_witness_) track_witness_->finish();
+  if (pose_witness_) pose_witness_->finish();
   radio_->finish();
   record_radio();
   record_links();
-  record_log();
+  if (prepared_->log) record_log(*prepared_, simulation_.record());
 }
 
 void Run::record_radio() {
@@ -361,23 +337,6 @@ void Run::record_links() {
       record.link({from, to, record.name(to_string(static_cast<Fate>(f))), packets});
     }
   });
-}
-
-void Run::record_log() {
-  if (!prepared_->log) return;
-  Record& record = simulation_.record();
-  for (std::size_t i = 0; i < prepared_->specs.size(); ++i) {
-    const mrclam::Robot& robot = prepared_->log->robots[i];
-    const auto id = static_cast<AgentId>(i);
-    record.scalar(id, record.name("log_skipped_truth_gap"),
-                  static_cast<double>(robot.skips.truth_gap));
-    record.scalar(id, record.name("log_skipped_unknown_barcode"),
-                  static_cast<double>(robot.skips.unknown_barcode));
-    record.scalar(id, record.name("log_skipped_robot_sighting"),
-                  static_cast<double>(robot.skips.robot_sighting));
-    record.scalar(id, record.name("log_skipped_bad_range"),
-                  static_cast<double>(robot.skips.bad_range));
-  }
 }
 
 }  // namespace hearsay

@@ -6,14 +6,14 @@
 //   ... run.record() ...
 #pragma once
 
-#include <map>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <vector>
 
 #include "agents/catalog.hpp"
 #include "agents/estimator_agent.hpp"
+#include "agents/localizer_agent.hpp"
+#include "agents/pose_witness.hpp"
 #include "agents/source_agent.hpp"
 #include "agents/target_truth.hpp"
 #include "agents/track_witness.hpp"
@@ -22,6 +22,7 @@
 #include "scenarios/life.hpp"
 #include "scenarios/links.hpp"
 #include "scenarios/loader.hpp"
+#include "scenarios/log_cache.hpp"
 #include "scenarios/motion.hpp"
 #include "scenarios/scenario.hpp"
 #include "scenarios/services.hpp"
@@ -31,17 +32,6 @@ namespace hearsay {
 
 /// What scenario and study files may name, given the agents of `catalog`.
 KnownNames known_names(const Catalog& catalog);
-
-/// Data sets read once and shared by all runs that use them. Safe to use from several threads.
-class LogCache {
- public:
-  std::shared_ptr<const mrclam::Dataset> get(const std::string& directory, int robots,
-                                             Duration truth_gap_max);
-
- private:
-  std::mutex mutex_;
-  std::map<std::string, std::shared_ptr<const mrclam::Dataset>> datasets_;
-};
 
 /// A scenario with everything worked out that is the same in each of its runs. Never changes; any
 /// number of runs and threads share one.
@@ -57,6 +47,8 @@ struct PreparedScenario {
   std::vector<std::vector<Sensor>> sensors;  ///< of each agent
   std::vector<std::vector<Observation>> observations;  ///< of each agent, from a log
   std::shared_ptr<const mrclam::Dataset> log;
+  std::vector<Journey> journeys;           ///< of each agent, for localizers, from a log
+  std::vector<Eigen::Vector2d> landmarks;  ///< the same
   std::vector<Metric> series;
 };
 
@@ -89,11 +81,11 @@ class Run {
   std::unique_ptr<Agent> make_agent(AgentId id, const Catalog& catalog);
   std::unique_ptr<Agent> make_estimator(AgentId id);
   std::unique_ptr<Agent> make_tracker(AgentId id);
+  std::unique_ptr<Agent> make_localizer(AgentId id);
   PeriodicTalk talk_of(AgentId id) const;
   void leave_final_values();
   void record_radio();
   void record_links();
-  void record_log();
 
   // The order matters: what is below is destroyed first and may use what is above.
   std::shared_ptr<const PreparedScenario> prepared_;
@@ -101,6 +93,7 @@ class Run {
   std::vector<Subject> subjects_;                // with the truth of this run
   std::vector<TargetTruth> targets_;             // of this run, for trackers
   std::unique_ptr<TrackWitness> track_witness_;  // null without trackers
+  std::unique_ptr<PoseWitness> pose_witness_;    // null without localizers
   std::unique_ptr<Witness> witness_;             // owns the riders of packets in flight
   std::unique_ptr<AgentPaths> paths_;            // null if nobody moves, and so the next two
   std::unique_ptr<Places> places_;

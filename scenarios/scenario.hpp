@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/localizer_spec.hpp"
 #include "scenarios/motion_spec.hpp"
 #include "scenarios/radio_spec.hpp"
 #include "scenarios/tracker_spec.hpp"
@@ -26,10 +27,12 @@ struct LogSpec {
   std::string kind = "mrclam";   ///< UTIAS multi-robot data sets
   std::string directory;         ///< relative to the scenario file, or absolute
   double truth_gap_max_s = 0.5;  ///< measurements in wider gaps of the truth are skipped, > 0
+  /// "landmarks", which stand still | "robots", which move: what estimators believe in
+  std::string subjects = "landmarks";
 };
 
 struct WorldSpec {
-  std::vector<TargetSpec> targets;  ///< empty with a log: its landmarks
+  std::vector<TargetSpec> targets;  ///< empty with a log: see LogSpec::subjects
   /// > 0: agents look at targets and believe in them at multiples of this; none: targets stand
   /// still
   std::optional<double> step_s;
@@ -110,7 +113,7 @@ struct TrafficSpec {
 
 struct AgentSpec {
   std::string name;                ///< default "<kind><i>"; with count > 1 a number is appended
-  std::string kind = "estimator";  ///< "tracker", "source", or one that a program adds
+  std::string kind = "estimator";  ///< "tracker", "localizer", "source", or a program's own
   int count = 1;                   ///< 1 … 1e6
   std::optional<std::vector<double>> position_m;  ///< 2 coordinates
   std::optional<CircleSpec> circle;               ///< instead of position_m
@@ -118,6 +121,7 @@ struct AgentSpec {
   SensorSpec sensor;
   EstimatorSpec estimator;
   TrackerSpec tracker;
+  LocalizerSpec localizer;
   TalkSpec talk;
   std::optional<TrafficSpec> traffic;        ///< of a source; none: it listens
   std::map<std::string, double> parameters;  ///< free, for agents of a user's program

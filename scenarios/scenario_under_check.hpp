@@ -82,6 +82,9 @@ void check_estimators(ScenarioUnderCheck& file);
 /// Checks agents that track, and their sensors.
 /// @throws InputError.
 void check_trackers(ScenarioUnderCheck& file);
+/// Checks robots that localize themselves.
+/// @throws InputError.
+void check_localizers(const ScenarioUnderCheck& file);
 /// Checks that what rules and talk need is given, and nothing that would be without effect.
 /// @throws InputError.
 void check_talk(const ScenarioUnderCheck& file);

@@ -1,172 +1,23 @@
 #include "sim/world/mrclam.hpp"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <map>
-#include <optional>
 #include <set>
-#include <string_view>
 #include <system_error>
 #include <utility>
 
 #include "sim/kernel/error.hpp"
 #include "sim/math/functions.hpp"
+#include "sim/world/log_table.hpp"
 
 namespace hearsay::mrclam {
 namespace {
 
-constexpr std::int64_t ns_per_s = 1'000'000'000;
-constexpr std::uint64_t seconds_max = 9'000'000'000;  // in nanoseconds it still fits 63 bits
-constexpr double number_max = 1e6;  // far beyond any room; sums and differences stay finite
-
-/// Digits behind the point of a time in seconds, as nanoseconds; the tenth rounds, others are let
-/// go.
-std::int64_t decimals_ns(const char* digit, const char* end) {
-  std::int64_t ns = 0;
-  std::int64_t unit = ns_per_s / 10;
-  for (; digit != end && unit > 0; ++digit, unit /= 10) ns += (*digit - '0') * unit;
-  return ns + (digit != end && *digit >= '5' ? 1 : 0);
-}
-
-constexpr bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
-
-/// Text of a file as it may stand in a message: short, and without control characters.
-std::string quoted(std::string_view text) {
-  constexpr std::size_t length_max = 40;
-  std::string out = "\"";
-  for (const char c : text.substr(0, length_max)) out += (c >= ' ' && c <= '~') ? c : '?';
-  return out + (text.size() > length_max ? "…\"" : "\"");
-}
-
-std::string read_whole(const std::string& file) {
-  std::error_code error;
-  if (!std::filesystem::exists(file, error)) throw InputError(file, 0, "no such file");
-  if (!std::filesystem::is_regular_file(file, error)) throw InputError(file, 0, "not a file");
-  const auto size = std::filesystem::file_size(file, error);
-  if (error) throw InputError(file, 0, "cannot be read: " + error.message());
-  std::string content(size, '\0');
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream.read(content.data(), static_cast<std::streamsize>(size))) {
-    throw InputError(file, 0, "cannot be read");
-  }
-  return content;
-}
-
-/// Goes through the lines of a table of N columns.
-template <std::size_t N>
-class Table {
- public:
-  /// `columns` names what a line holds, for messages.
-  Table(std::string file, std::string columns)
-      : file_(std::move(file)), columns_(std::move(columns)), content_(read_whole(file_)) {}
-
-  /// Steps to the next line that is neither blank nor a comment; false at the end of the file.
-  bool next() {
-    while (position_ < content_.size()) {
-      const std::size_t end = content_.find('\n', position_);
-      ++line_;
-      if (end == std::string::npos) {
-        fail("the file is cut off: its last line has no line end");
-      }
-      const std::string_view text(content_.data() + position_, end - position_);
-      position_ = end + 1;
-      if (split(text)) return true;
-    }
-    return false;
-  }
-
-  /// The column as a number. @throws InputError if it is none, not finite or beyond ±1e6.
-  double number(std::size_t column) const {
-    const std::string_view text = fields_[column];
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error == std::errc::invalid_argument || end != text.data() + text.size()) {
-      fail(quoted(text) + " is no number");
-    }
-    if (error != std::errc{} || !std::isfinite(value) || std::fabs(value) > number_max) {
-      fail(quoted(text) + " is not within ±1e6");
-    }
-    return value;
-  }
-
-  /// The column as a whole number from 0. @throws InputError if it is none.
-  int whole(std::size_t column) const {
-    const std::string_view text = fields_[column];
-    int value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc{} || end != text.data() + text.size() || value < 0) {
-      fail(quoted(text) + " is no whole number from 0");
-    }
-    return value;
-  }
-
-  /// The first column as a time in nanoseconds. Read digit by digit: at 1.2e9 s a double resolves
-  /// no better than 0.24 µs. @throws InputError if it is none or less than in the line before.
-  std::int64_t time() {
-    const std::string_view text = fields_[0];
-    const char* const end = text.data() + text.size();
-    std::uint64_t seconds = 0;
-    const auto [point, error] = std::from_chars(text.data(), end, seconds);
-    if (error == std::errc::invalid_argument || (point != end && *point != '.') ||
-        std::any_of(std::min(point + 1, end), end, [](char c) { return c < '0' || c > '9'; })) {
-      fail(quoted(text) + " is no time in seconds");
-    }
-    if (error != std::errc{} || seconds > seconds_max) {
-      fail(quoted(text) + " is not within 0 … 9e9 s");
-    }
-    const std::int64_t ns =
-        static_cast<std::int64_t>(seconds) * ns_per_s + decimals_ns(std::min(point + 1, end), end);
-    if (ns < previous_ns_) {
-      fail("time goes backwards: " + std::string(text) + " after " + std::string(previous_time_));
-    }
-    previous_ns_ = ns;
-    previous_time_ = text;
-    return ns;
-  }
-
-  [[noreturn]] void fail(const std::string& message) const {
-    throw InputError(file_, line_, message);
-  }
-  const std::string& file() const { return file_; }
-
- private:
-  /// Fills fields_; false for a blank line or a comment.
-  bool split(std::string_view text) {
-    std::size_t count = 0;
-    for (std::size_t i = 0;;) {
-      while (i < text.size() && is_blank(text[i])) ++i;
-      if (i == text.size()) break;
-      if (count == 0 && text[i] == '#') return false;
-      const std::size_t start = i;
-      while (i < text.size() && !is_blank(text[i])) ++i;
-      if (count < N) fields_[count] = text.substr(start, i - start);
-      ++count;
-    }
-    if (count == 0) return false;
-    if (count != N) {
-      fail(std::to_string(count) + (count == 1 ? " field" : " fields") + "; a line holds " +
-           std::to_string(N) + ": " + columns_);
-    }
-    return true;
-  }
-
-  std::string file_;
-  std::string columns_;
-  std::string content_;
-  std::size_t position_ = 0;
-  int line_ = 0;
-  std::array<std::string_view, N> fields_;
-  std::int64_t previous_ns_ = 0;
-  std::string_view previous_time_;
-};
-
 std::vector<Landmark> load_landmarks(const std::string& directory) {
-  Table<5> table(directory + "/Landmark_Groundtruth.dat",
+  LogTable table(directory + "/Landmark_Groundtruth.dat", 5,
                  "subject, x, y, std-dev of x, std-dev of y");
   std::map<int, Landmark> landmarks;
   while (table.next()) {
@@ -187,13 +38,13 @@ std::vector<Landmark> load_landmarks(const std::string& directory) {
   return sorted;
 }
 
-/// What a barcode stands for: an index into the landmarks, or a robot.
-constexpr int a_robot = -1;
+/// What a barcode stands for: an index into the landmarks; of a robot minus its subject.
+using Meaning = int;
 
-std::map<int, int> load_barcodes(const std::string& directory,
-                                 const std::vector<Landmark>& landmarks) {
-  Table<2> table(directory + "/Barcodes.dat", "subject, barcode");
-  std::map<int, int> meanings;
+std::map<int, Meaning> load_barcodes(const std::string& directory,
+                                     const std::vector<Landmark>& landmarks) {
+  LogTable table(directory + "/Barcodes.dat", 2, "subject, barcode");
+  std::map<int, Meaning> meanings;
   std::set<int> subjects;
   while (table.next()) {
     const int subject = table.whole(0);
@@ -201,7 +52,7 @@ std::map<int, int> load_barcodes(const std::string& directory,
     if (!subjects.insert(subject).second) {
       table.fail("subject " + std::to_string(subject) + " is listed twice");
     }
-    int meaning = a_robot;
+    Meaning meaning = -subject;
     if (subject < 1 || subject > robots_max) {
       const auto found = std::find_if(landmarks.begin(), landmarks.end(),
                                       [&](const Landmark& l) { return l.subject == subject; });
@@ -224,63 +75,71 @@ std::map<int, int> load_barcodes(const std::string& directory,
   return meanings;
 }
 
-/// A robot's true path. Times as in the file, in nanoseconds.
-class Truth {
- public:
-  explicit Truth(const std::string& file) {
-    Table<4> table(file, "time, x, y, heading");
-    while (table.next()) {
-      const Sample sample{table.time(), table.number(1), table.number(2), table.number(3)};
-      if (!samples_.empty() && samples_.back().ns == sample.ns) samples_.pop_back();
-      samples_.push_back(sample);
-    }
-    if (samples_.empty()) throw InputError(file, 0, "no poses");
-    unwrap();
+PoseSample between(const PoseSample& before, const PoseSample& after, Time time) {
+  const auto part = static_cast<double>((time - before.time).nanoseconds());
+  const auto whole = static_cast<double>((after.time - before.time).nanoseconds());
+  const double share = part / whole;
+  return {time, before.x_m + share * (after.x_m - before.x_m),
+          before.y_m + share * (after.y_m - before.y_m),
+          before.heading_rad + share * (after.heading_rad - before.heading_rad)};
+}
+
+/// The first sample later than `time`.
+std::size_t first_after(const std::vector<PoseSample>& truth, Time time) {
+  const auto after = std::upper_bound(
+      truth.begin(), truth.end(), time,
+      [](Time instant, const PoseSample& sample) { return instant < sample.time; });
+  return static_cast<std::size_t>(after - truth.begin());
+}
+
+/// Adds whole turns to the headings so that none differs from the one before by more than π.
+/// Turns are counted, not differences summed: 60,000 samples leave no rounding behind.
+void unwrap(std::vector<PoseSample>& truth) {
+  double turns = 0.0;
+  double previous = truth.front().heading_rad;
+  for (PoseSample& sample : truth) {
+    const double raw = sample.heading_rad;
+    const double step = raw - previous;
+    turns += std::floor((math::wrap_angle(step) - step) / (2.0 * math::pi) + 0.5);
+    sample.heading_rad = raw + turns * 2.0 * math::pi;
+    previous = raw;
   }
+}
 
-  /// The pose at `ns`, which must not decrease from call to call; nothing in a gap wider than
-  /// `gap_max_ns`, before the first sample or after the last. Its time is left at zero.
-  std::optional<PoseSample> at(std::int64_t ns, std::int64_t gap_max_ns) {
-    while (next_ < samples_.size() && samples_[next_].ns <= ns) ++next_;
-    if (next_ == 0) return std::nullopt;
-    const Sample& before = samples_[next_ - 1];
-    if (before.ns == ns) return PoseSample{Time(), before.x_m, before.y_m, before.heading_rad};
-    if (next_ == samples_.size()) return std::nullopt;
-    const Sample& after = samples_[next_];
-    if (after.ns - before.ns > gap_max_ns) return std::nullopt;
-    const double share =
-        static_cast<double>(ns - before.ns) / static_cast<double>(after.ns - before.ns);
-    return PoseSample{
-        Time(),
-        before.x_m + share * (after.x_m - before.x_m),
-        before.y_m + share * (after.y_m - before.y_m),
-        before.heading_rad + share * (after.heading_rad - before.heading_rad),
-    };
+std::vector<PoseSample> load_truth(const std::string& file, std::int64_t start_ns) {
+  LogTable table(file, 4, "time, x, y, heading");
+  std::vector<PoseSample> truth;
+  while (table.next()) {
+    const PoseSample sample{Time::nanoseconds(table.time() - start_ns), table.number(1),
+                            table.number(2), table.number(3)};
+    if (!truth.empty() && truth.back().time == sample.time) truth.pop_back();
+    truth.push_back(sample);
   }
+  if (truth.empty()) throw InputError(file, 0, "no poses");
+  unwrap(truth);
+  return truth;
+}
 
- private:
-  struct Sample {
-    std::int64_t ns;
-    double x_m, y_m, heading_rad;
-  };
-
-  /// Adds whole turns to the headings so that none differs from the one before by more than π.
-  /// Turns are counted, not differences summed: 60,000 samples leave no rounding behind.
-  void unwrap() {
-    double turns = 0.0;
-    double previous = samples_.front().heading_rad;
-    for (Sample& sample : samples_) {
-      const double raw = sample.heading_rad;
-      const double step = raw - previous;
-      turns += std::floor((math::wrap_angle(step) - step) / (2.0 * math::pi) + 0.5);
-      sample.heading_rad = raw + turns * 2.0 * math::pi;
-      previous = raw;
-    }
+std::vector<OdometrySample> load_odometry(const std::string& file, std::int64_t start_ns) {
+  LogTable table(file, 3, "time, forward velocity, angular velocity");
+  std::vector<OdometrySample> odometry;
+  while (table.next()) {
+    const Time time = Time::nanoseconds(std::max<std::int64_t>(table.time() - start_ns, 0));
+    if (!odometry.empty() && odometry.back().time == time) odometry.pop_back();
+    odometry.push_back({time, table.number(1), table.number(2)});
   }
+  return odometry;
+}
 
-  std::vector<Sample> samples_;
-  std::size_t next_ = 0;  // first sample later than the last time asked for
-};
+/// The pose at `time`; nothing in a gap wider than `gap_max`.
+std::optional<PoseSample> pose_near(const std::vector<PoseSample>& truth, Time time,
+                                    Duration gap_max) {
+  const std::size_t next = first_after(truth, time);
+  const bool exact = next > 0 && truth[next - 1].time == time;
+  const bool inside = next > 0 && next < truth.size();
+  if (!exact && (!inside || truth[next].time - truth[next - 1].time > gap_max)) return std::nullopt;
+  return pose_at(truth, time);
+}
 
 struct Reading {
   std::int64_t ns;
@@ -289,7 +148,7 @@ struct Reading {
 };
 
 std::vector<Reading> load_readings(const std::string& file) {
-  Table<4> table(file, "time, barcode, range, bearing");
+  LogTable table(file, 4, "time, barcode, range, bearing");
   std::vector<Reading> readings;
   while (table.next()) {
     readings.push_back({table.time(), table.whole(1), table.number(2), table.number(3)});
@@ -297,20 +156,28 @@ std::vector<Reading> load_readings(const std::string& file) {
   return readings;
 }
 
-Robot make_robot(int subject, const std::vector<Reading>& readings, Truth truth,
-                 const std::map<int, int>& meanings, std::int64_t start_ns,
-                 std::int64_t gap_max_ns) {
-  Robot robot{.subject = subject, .sightings = {}, .skips = {}, .unknown_barcodes = {}};
+/// What all robots' measurements have in common.
+struct Common {
+  const std::map<int, Meaning>& meanings;
+  int robots;
+  Time start;  // on the clock of the files
+  Duration gap_max;
+};
+
+Robot make_robot(int subject, const std::vector<Reading>& readings, std::vector<PoseSample> truth,
+                 const Common& common) {
+  Robot robot{.subject = subject, .truth = std::move(truth)};
   std::set<int> unknown;
   for (const Reading& reading : readings) {
     ++robot.skips.lines;
-    const auto meaning = meanings.find(reading.barcode);
-    if (meaning == meanings.end()) {
+    const auto meaning = common.meanings.find(reading.barcode);
+    if (meaning == common.meanings.end()) {
       ++robot.skips.unknown_barcode;
       unknown.insert(reading.barcode);
       continue;
     }
-    if (meaning->second == a_robot) {
+    const int companion = -meaning->second;  // its subject
+    if (companion > common.robots || companion == subject) {
       ++robot.skips.robot_sighting;
       continue;
     }
@@ -318,14 +185,17 @@ Robot make_robot(int subject, const std::vector<Reading>& readings, Truth truth,
       ++robot.skips.bad_range;
       continue;
     }
-    std::optional<PoseSample> pose = truth.at(reading.ns, gap_max_ns);
+    const Time time = Time::nanoseconds(reading.ns - common.start.nanoseconds());
+    const std::optional<PoseSample> pose = pose_near(robot.truth, time, common.gap_max);
     if (!pose) {
       ++robot.skips.truth_gap;
-      continue;
+    } else if (companion > 0) {
+      robot.companions.push_back(
+          {time, companion - 1, reading.range_m, reading.bearing_rad, *pose});
+    } else {
+      robot.sightings.push_back(
+          {time, meaning->second, reading.range_m, reading.bearing_rad, *pose});
     }
-    pose->time = Time::nanoseconds(reading.ns - start_ns);
-    robot.sightings.push_back(
-        {pose->time, meaning->second, reading.range_m, reading.bearing_rad, *pose});
   }
   robot.unknown_barcodes.assign(unknown.begin(), unknown.end());
   return robot;
@@ -333,7 +203,15 @@ Robot make_robot(int subject, const std::vector<Reading>& readings, Truth truth,
 
 }  // namespace
 
-Dataset load(const std::string& directory, int robots, Duration truth_gap_max) {
+std::optional<PoseSample> pose_at(const std::vector<PoseSample>& truth, Time time) {
+  const std::size_t next = first_after(truth, time);
+  if (next == 0) return std::nullopt;
+  if (truth[next - 1].time == time) return truth[next - 1];
+  if (next == truth.size()) return std::nullopt;
+  return between(truth[next - 1], truth[next], time);
+}
+
+Dataset load(const std::string& directory, int robots, Duration truth_gap_max, Odometry odometry) {
   require(truth_gap_max > Duration(), "mrclam::load: truth_gap_max must be positive");
   std::error_code error;
   if (!std::filesystem::is_directory(directory, error)) {
@@ -345,7 +223,7 @@ Dataset load(const std::string& directory, int robots, Duration truth_gap_max) {
   }
   Dataset dataset;
   dataset.landmarks = load_landmarks(directory);
-  const std::map<int, int> meanings = load_barcodes(directory, dataset.landmarks);
+  const std::map<int, Meaning> meanings = load_barcodes(directory, dataset.landmarks);
 
   std::vector<std::vector<Reading>> readings;
   std::int64_t first_ns = std::numeric_limits<std::int64_t>::max();
@@ -361,10 +239,13 @@ Dataset load(const std::string& directory, int robots, Duration truth_gap_max) {
   }
   if (first_ns > last_ns) throw InputError(directory, 0, "no robot has a measurement");
   dataset.span = Duration::nanoseconds(last_ns - first_ns);
+  const Common common{meanings, robots, Time::nanoseconds(first_ns), truth_gap_max};
   for (int subject = 1; subject <= robots; ++subject) {
     dataset.robots.push_back(make_robot(subject, readings[static_cast<std::size_t>(subject - 1)],
-                                        Truth(file_of(subject, "Groundtruth")), meanings, first_ns,
-                                        truth_gap_max.nanoseconds()));
+                                        load_truth(file_of(subject, "Groundtruth"), first_ns),
+                                        common));
+    if (odometry == Odometry::skip) continue;
+    dataset.robots.back().odometry = load_odometry(file_of(subject, "Odometry"), first_ns);
   }
   return dataset;
 }

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,20 +35,38 @@ struct Sighting {
   double bearing_rad;
   PoseSample pose;  ///< of the robot, interpolated linearly from the truth
 };
+/// Of another robot.
+struct CompanionSighting {
+  Time time;
+  int robot;       ///< index into robots
+  double range_m;  ///< > 0
+  double bearing_rad;
+  PoseSample pose;  ///< of the one that looks, as above
+};
+/// Velocities until the next sample; before the start only the last sample is kept, at time 0.
+struct OdometrySample {
+  Time time;
+  double forward_m_per_s;
+  double turn_rad_per_s;  ///< counterclockwise
+};
 /// What was left out and why, each line under the first reason that holds, in this order:
-/// unknown_barcode, robot_sighting, bad_range, truth_gap. Sum of the four + sightings = lines.
+/// unknown_barcode, robot_sighting, bad_range, truth_gap. Sum of the four + sightings + companions
+/// = lines.
 struct Skips {
   std::uint64_t truth_gap = 0;        ///< no truth within the permitted gap
   std::uint64_t unknown_barcode = 0;  ///< in no line of Barcodes.dat
-  std::uint64_t robot_sighting = 0;   ///< another robot; not used here
+  std::uint64_t robot_sighting = 0;   ///< a robot that was not asked for, or itself
   std::uint64_t bad_range = 0;        ///< range not positive
   std::uint64_t lines = 0;            ///< measurement lines read
 };
 struct Robot {
   int subject;
-  std::vector<Sighting> sightings;  ///< by time; equal times in file order
-  Skips skips;
-  std::vector<int> unknown_barcodes;  ///< distinct, ascending
+  std::vector<PoseSample> truth = {};              ///< by time, which may be before the start
+  std::vector<Sighting> sightings = {};            ///< by time; equal times in file order
+  std::vector<CompanionSighting> companions = {};  ///< the same
+  std::vector<OdometrySample> odometry = {};       ///< by time; empty unless asked for
+  Skips skips = {};
+  std::vector<int> unknown_barcodes = {};  ///< distinct, ascending
 };
 struct Dataset {
   std::vector<Landmark> landmarks;  ///< by subject, ascending
@@ -55,6 +74,13 @@ struct Dataset {
   Duration span;                    ///< first to last measurement line of any of these robots,
                                     ///< skipped or not; times count from the first
 };
+
+/// Where a robot was, between samples on the straight line, however far these are apart; nothing
+/// before the first or after the last.
+std::optional<PoseSample> pose_at(const std::vector<PoseSample>& truth, Time time);
+
+/// Whether odometry is read: 60,000 lines a robot.
+enum class Odometry { skip, read };
 
 /// Loads the robots 1 … `robots` of the data set in `directory`.
 ///
@@ -66,6 +92,7 @@ struct Dataset {
 /// ±1e6 (times: beyond 0 … 9e9 s), time going backwards, a barcode or subject listed twice, a
 /// subject without landmark position, a landmark without barcode, a truth file without poses, no
 /// measurement at all, a last line that is cut off.
-Dataset load(const std::string& directory, int robots, Duration truth_gap_max);
+Dataset load(const std::string& directory, int robots, Duration truth_gap_max,
+             Odometry odometry = Odometry::skip);
 
 }  // namespace hearsay::mrclam

@@ -77,6 +77,10 @@ Json agents(const Catalog& catalog) {
        {"meaning", "looks, updates its beliefs, talks now and then, fuses what it hears"}});
   out.push_back({{"name", "tracker"},
                  {"meaning", "scans, finds targets it cannot tell apart, exchanges tracks"}});
+  out.push_back({{"name", "localizer"},
+                 {"meaning",
+                  "keeps its own pose from odometry, landmarks and companions, and tells "
+                  "companions where it saw them"}});
   out.push_back({{"name", "source"}, {"meaning", "makes traffic, counts what it hears"}});
   for (const auto& [name, kind] : catalog.agents()) {
     out.push_back({{"name", name}, {"meaning", kind.meaning}});

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/kernel/error.hpp"
 #include "sim/math/functions.hpp"
 #include "tests/sim/world/small_dataset.hpp"
 
@@ -36,8 +37,8 @@ class Mrclam : public SmallDataset {
 
 void expect_sum_of_lines(const Robot& robot) {
   const Skips& skips = robot.skips;
-  EXPECT_EQ(skips.lines, robot.sightings.size() + skips.truth_gap + skips.unknown_barcode +
-                             skips.robot_sighting + skips.bad_range);
+  EXPECT_EQ(skips.lines, robot.sightings.size() + robot.companions.size() + skips.truth_gap +
+                             skips.unknown_barcode + skips.robot_sighting + skips.bad_range);
 }
 
 TEST_F(Mrclam, ASightingCarriesLandmarkRangeBearingAndTheInterpolatedPose) {
@@ -180,13 +181,58 @@ TEST_F(Mrclam, EverySkipIsCountedUnderItsReason) {
         "12 81 -0.5 0\n12 14 0 0\n30 81 1 0\n30 63 0 0\n");
   const Robot robot = load_with_gap(10_s).robots[0];
   EXPECT_EQ(robot.skips.lines, 11U);
-  EXPECT_EQ(robot.skips.robot_sighting, 3U);
+  EXPECT_EQ(robot.skips.robot_sighting, 1U);  // itself
+  EXPECT_EQ(robot.companions.size(), 1U);
   EXPECT_EQ(robot.skips.unknown_barcode, 3U);
-  EXPECT_EQ(robot.skips.bad_range, 3U);
+  EXPECT_EQ(robot.skips.bad_range, 4U);
   EXPECT_EQ(robot.skips.truth_gap, 1U);
   EXPECT_EQ(robot.sightings.size(), 1U);
   EXPECT_THAT(robot.unknown_barcodes, ElementsAre(34, 43));
   expect_sum_of_lines(robot);
+}
+
+TEST_F(Mrclam, ASightingOfACompanionCarriesItAndThePoseOfTheOneThatLooks) {
+  write("Robot1_Measurement.dat", "10 63 1 0\n12.5 14 2.25 -0.5\n");
+  const Dataset set = load_with_gap(10_s);
+  ASSERT_EQ(set.robots[0].companions.size(), 1U);
+  const CompanionSighting& seen = set.robots[0].companions[0];
+  EXPECT_EQ(seen.robot, 1);
+  EXPECT_EQ(seen.time, Time() + 2500_ms);
+  EXPECT_EQ(seen.range_m, 2.25);
+  EXPECT_EQ(seen.bearing_rad, -0.5);
+  EXPECT_DOUBLE_EQ(seen.pose.x_m, 2.5);
+  const Robot alone = load_with_gap(10_s, 1).robots[0];  // robot 2 was not asked for
+  EXPECT_EQ(alone.skips.robot_sighting, 1U);
+  EXPECT_THAT(alone.companions, IsEmpty());
+  expect_sum_of_lines(alone);
+}
+
+TEST_F(Mrclam, ThePoseAtATimeIsInterpolatedAcrossAnyGapAndEndsWithTheTruth) {
+  const std::vector<PoseSample> truth = load_with_gap(1_s).robots[0].truth;
+  ASSERT_EQ(truth.size(), 2U);
+  EXPECT_EQ(truth[0].time, Time() - 2500_ms);  // the first measurement is at 12.5
+  const auto pose = pose_at(truth, Time() + 2500_ms);
+  ASSERT_TRUE(pose);
+  EXPECT_DOUBLE_EQ(pose->x_m, 5.0);
+  EXPECT_DOUBLE_EQ(pose->heading_rad, 0.5);
+  EXPECT_EQ(pose_at(truth, Time() + 7500_ms)->y_m, 20.0);
+  EXPECT_FALSE(pose_at(truth, Time() + 7501_ms));
+  EXPECT_FALSE(pose_at(truth, Time() - 2501_ms));
+}
+
+TEST_F(Mrclam, OdometryIsReadWhereAskedForAndOfWhatWasBeforeTheStartTheLastIsKept) {
+  EXPECT_THAT(load_with_gap(10_s).robots[0].odometry, IsEmpty());
+  write("Robot1_Odometry.dat", "# t v w\n11 0.1 0\n12 0.2 -0.5\n13 0.3 0.25\n");
+  write("Robot2_Odometry.dat", "14 0 0\n");
+  const Dataset set = load(directory_, 2, 10_s, Odometry::read);
+  const std::vector<OdometrySample>& odometry = set.robots[0].odometry;
+  ASSERT_EQ(odometry.size(), 2U);
+  EXPECT_EQ(odometry[0].time, Time());
+  EXPECT_EQ(odometry[0].forward_m_per_s, 0.2);
+  EXPECT_EQ(odometry[0].turn_rad_per_s, -0.5);
+  EXPECT_EQ(odometry[1].time, Time() + 500_ms);
+  remove("Robot2_Odometry.dat");
+  EXPECT_THROW(load(directory_, 2, 10_s, Odometry::read), InputError);
 }
 
 TEST_F(Mrclam, ARobotWithoutMeasurementsIsThereAndSilent) {
@@ -221,7 +267,8 @@ TEST_F(RealLogs, CountsAgreeWithAnIndependentCount) {
   ASSERT_EQ(set.landmarks.size(), 15U);
   EXPECT_EQ(set.span, 886'067_ms);
   const std::uint64_t lines[] = {1942, 4031, 5627, 2399, 5378};
-  const std::uint64_t robots[] = {407, 792, 1277, 373, 1139};
+  const std::size_t robots[] = {407, 792, 1277, 370, 1139};
+  const std::uint64_t gaps[] = {0, 0, 0, 3, 0};
   const std::uint64_t unknown[] = {1, 0, 2, 3, 0};
   const std::size_t sightings[] = {1534, 3239, 4348, 2023, 4239};
   const std::vector<int> barcodes[] = {{43}, {}, {34}, {50}, {}};
@@ -229,10 +276,11 @@ TEST_F(RealLogs, CountsAgreeWithAnIndependentCount) {
     SCOPED_TRACE("robot " + std::to_string(i + 1));
     const Robot& robot = set.robots[i];
     EXPECT_EQ(robot.skips.lines, lines[i]);
-    EXPECT_EQ(robot.skips.robot_sighting, robots[i]);
+    EXPECT_EQ(robot.companions.size(), robots[i]);
+    EXPECT_EQ(robot.skips.robot_sighting, 0U);
     EXPECT_EQ(robot.skips.unknown_barcode, unknown[i]);
     EXPECT_EQ(robot.skips.bad_range, 0U);
-    EXPECT_EQ(robot.skips.truth_gap, 0U);
+    EXPECT_EQ(robot.skips.truth_gap, gaps[i]);
     EXPECT_EQ(robot.sightings.size(), sightings[i]);
     EXPECT_EQ(robot.unknown_barcodes, barcodes[i]);
     expect_sum_of_lines(robot);
@@ -242,13 +290,40 @@ TEST_F(RealLogs, CountsAgreeWithAnIndependentCount) {
 TEST_F(RealLogs, ANarrowPermittedGapSkipsAsManyAsAnIndependentCount) {
   const Dataset at_100_ms = load(directory_, 5, 100_ms);
   const Dataset at_20_ms = load(directory_, 5, 20_ms);
-  const std::uint64_t gaps_100_ms[] = {3, 7, 13, 1, 22};
-  const std::uint64_t gaps_20_ms[] = {551, 983, 1606, 625, 1512};
+  const std::uint64_t gaps_100_ms[] = {4, 7, 15, 4, 27};
+  const std::uint64_t gaps_20_ms[] = {711, 1250, 2082, 761, 1896};
   for (std::size_t i = 0; i < 5; ++i) {
     EXPECT_EQ(at_100_ms.robots[i].skips.truth_gap, gaps_100_ms[i]);
     EXPECT_EQ(at_20_ms.robots[i].skips.truth_gap, gaps_20_ms[i]);
     expect_sum_of_lines(at_20_ms.robots[i]);
   }
+}
+
+TEST_F(RealLogs, CompanionsAndOdometryAgreeWithAnIndependentReading) {
+  const Dataset set = load(directory_, 5, 500_ms, Odometry::read);
+  const double mean_x[] = {2.1364745966688976, 2.3957767519490623, 2.423855272591029,
+                           2.6439956269896396, 2.2903079135539937};
+  const double speeds[] = {3074.089, 4149.025, 3811.343, 2199.231, 3506.992};  // after the start
+  const std::size_t samples[] = {61739, 65004, 61111, 52906, 60563};  // … at distinct times
+  for (std::size_t i = 0; i < 5; ++i) {
+    const Robot& robot = set.robots[i];
+    double x = 0.0, speed = 0.0;
+    std::size_t count = 0;
+    for (const CompanionSighting& s : robot.companions) x += s.pose.x_m;
+    for (const OdometrySample& s : robot.odometry) {
+      if (s.time == Time()) continue;
+      speed += s.forward_m_per_s;
+      ++count;
+    }
+    EXPECT_NEAR(x / static_cast<double>(robot.companions.size()), mean_x[i], 1e-10);
+    EXPECT_NEAR(speed, speeds[i], 1e-6);
+    EXPECT_EQ(count, samples[i]);
+  }
+  const CompanionSighting& middle = set.robots[4].companions[569];
+  EXPECT_EQ(middle.time, Time() + 463'499_ms);
+  EXPECT_EQ(middle.robot, 1);
+  EXPECT_EQ(middle.range_m, 1.91);
+  EXPECT_EQ(middle.bearing_rad, -0.213);
 }
 
 TEST_F(RealLogs, PosesAgreeWithAnIndependentInterpolation) {

@@ -1,0 +1,50 @@
+// The part of describe.hpp about robots that localize themselves.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "filters/gaussian/fusion.hpp"
+#include "scenarios/localizer_spec.hpp"
+#include "scenarios/reading.hpp"
+
+namespace hearsay {
+
+/// The rules by which a localizer can take in what it is told.
+inline std::vector<std::string> localizer_fusion_names() {
+  std::vector<std::string> names;
+  for (const auto& rule : gaussian::rules()) {
+    const bool fits =
+        (rule.sends == gaussian::Sends::nothing || rule.sends == gaussian::Sends::belief) &&
+        rule.fuses == gaussian::Fuses::by_weight && rule.memory == gaussian::Memory::nothing &&
+        rule.rule != gaussian::Rule::ci_fixed;  // there is no key for its weight
+    if (fits) names.emplace_back(rule.name);
+  }
+  return names;
+}
+
+template <class V>
+void describe(V& v, LocalizerSpec& s) {
+  v.field("fusion", s.fusion, one_of(localizer_fusion_names()),
+          "how what companions say of its position is taken in");
+  v.field("landmarks_known", s.landmarks_known, between(0, 1e6),
+          "how many landmarks it knows, the first of the log; default: all");
+  v.field("start_sigma_m", s.start_sigma_m, greater_than_zero(),
+          "standard deviation of its first position, an axis");
+  v.field("start_sigma_rad", s.start_sigma_rad, greater_than_zero(), "… and heading");
+  v.field(
+      "forward_m_per_sqrt_s", s.forward_m_per_sqrt_s, at_least(0.0),
+      "odometry: standard deviation along the heading after a second; it grows with the root of "
+      "time");
+  v.field("sideways_m_per_sqrt_s", s.sideways_m_per_sqrt_s, at_least(0.0), "… across it");
+  v.field("turn_rad_per_sqrt_s", s.turn_rad_per_sqrt_s, greater_than_zero(), "… of the heading");
+  v.field("gate", s.gate, greater_than_zero(),
+          "squared Mahalanobis distance beyond which what was seen or heard is left out");
+  v.field("companion_speed_m_per_s", s.companion_speed_m_per_s, at_least(0.0),
+          "how fast a companion may have gone from where it said it was, a standard deviation an "
+          "axis");
+  Allowed memory = time_span(false);
+  v.field("memory_s", s.memory_s, memory, "how old may be what it is told of itself");
+}
+
+}  // namespace hearsay

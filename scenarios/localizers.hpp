@@ -1,0 +1,31 @@
+// Robots that localize themselves, and what they go through.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "agents/localizer_agent.hpp"
+#include "scenarios/scenario.hpp"
+#include "sim/world/mrclam.hpp"
+
+namespace hearsay {
+
+/// True if some agent localizes itself.
+bool has_localizers(const Scenario& scenario);
+
+/// The robots of a log, with the truth at every instant `period` apart, and at `end`.
+/// @throws InputError, of `file`, for a robot whose truth is not known at the start.
+std::vector<Journey> journeys_of(const mrclam::Dataset& log, Duration period, Time end,
+                                 const std::string& file);
+
+std::vector<Eigen::Vector2d> landmarks_of(const mrclam::Dataset& log);
+
+/// Of the robots from `first` to `last`, by number. Central filters share the first one's numbers.
+localization::PoseFilter::Options pose_filter_options(const LocalizerSpec& spec,
+                                                      std::span<const Journey> journeys);
+
+/// All but when it talks. What is given by reference outlives the agent.
+LocalizerAgent::Options localizer_options(const AgentSpec& spec, const Journey& journey,
+                                          std::span<const Eigen::Vector2d> landmarks);
+
+}  // namespace hearsay

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "agents/agent.hpp"
+#include "agents/dead_reckoning.hpp"
 #include "agents/journey.hpp"
 #include "agents/pose_witness.hpp"
 #include "agents/talk/periodic.hpp"
@@ -75,7 +76,7 @@ class LocalizerAgent final : public Agent {
   PoseWitness& witness_;
   Options options_;
   localization::PoseFilter filter_;
-  localization::DeadReckoning reckoning_;
+  DeadReckoning reckoning_;
   Odometer odometer_;
   NameId message_kind_;
   std::vector<Companion> companions_;  // by number

@@ -65,6 +65,10 @@ constexpr std::array kMetrics = {
                "distance of estimate and truth at the end, mean over subjects, m"},
     MetricInfo{"final_claimed_sigma_m", kScalar, kRms, false,
                "claimed standard deviation an axis at the end, rms over subjects, m"},
+    MetricInfo{
+        "position_error_median_m", kScalar, kMean, false,
+        "of moving states: distance of estimate and truth, median over samples and subjects, "
+        "m; who knows nothing yet errs infinitely"},
     MetricInfo{"reach_gap_max", kScalar, kMean, true, "largest reach_gap of all samples"},
     MetricInfo{"not_positive_share", kScalar, kMean, false,
                "share of samples with an indefinite or overflown belief"},

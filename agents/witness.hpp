@@ -65,6 +65,7 @@ class Witness {
     AgentId agent;
     Estimator* estimator;
     double reach_gap_max = 0.0;
+    std::vector<double> distances_m = {};  // of moving subjects: errors at all samples
     std::uint64_t samples = 0;
     std::uint64_t not_positive = 0;
     bool overflow_told = false;
@@ -94,7 +95,8 @@ class Witness {
   void measure_ledger(const TrackedBelief& tracked, const gaussian::Assessment& assessment,
                       int subject, Values& values) const;
   void keep(AgentId agent, int subject, const Values& values);
-  void finish(const Watched& watched);
+  void keep_distance(std::vector<double>& distances_m, const Values& values) const;
+  void finish(Watched& watched);
   bool wants(Metric metric) const { return wanted_[static_cast<std::size_t>(metric)]; }
   gaussian::Vector truth(int subject) const;
 
@@ -110,6 +112,7 @@ class Witness {
   EstimatorWorkspace workspace_;
   std::vector<MeasurementBook> books_;  // by subject
   std::vector<TrackedBelief> central_;  // by subject
+  std::vector<double> central_distances_m_;
   std::vector<Watched> watched_;
   std::vector<Spread> spreads_;  // by subject; at the instant of a sample
   std::optional<Agreement> agreement_;

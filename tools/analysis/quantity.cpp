@@ -112,6 +112,10 @@ MetricRule metric_rule(const std::string& name, bool chi2_band) {
       "x_error_m",
       "y_error_m"};
   MetricRule rule{.name = name, .stored = name == "anees" ? "nees" : name};
+  if (name == "bytes_per_m_saved") {
+    rule.stored = "bytes_sent";
+    rule.over = "distance_saved_m";
+  }
   rule.rms = std::find(root_mean_squares.begin(), root_mean_squares.end(), name) !=
              root_mean_squares.end();
   rule.median = name == "agree_again_s";

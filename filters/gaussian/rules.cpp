@@ -101,7 +101,8 @@ constexpr std::array<RuleInfo, 18> table = {{
      "all beliefs are conservative; nothing about what they share; the graph is undirected",
      "always, for any correlation: weights of Metropolis, and one's own for whom was not heard",
      exact_ledger, "for k beliefs k additions, ~kn² operations, once a talk",
-     "G. Battistelli, L. Chisci, Automatica 50(3), 2014; weights: Xiao & Boyd 2004",
+     "G. Battistelli, L. Chisci, Automatica 50(3), 2014; weights: L. Xiao, S. Boyd, S. Lall, IPSN "
+     "2005",
      Fuses::at_once},
     {Rule::hybrid_consensus, "hybrid-consensus", Sends::hybrid, Memory::held,
      "as consensus-information; fresh measurements are spread evenly over estimator.correction "

@@ -39,7 +39,10 @@ step_s = 1
 [[world.targets]]
 name = "a"
 position_m = [5, -3]
-motion = { kind = "white-noise-acceleration", velocity_m_per_s = [2, 1], acceleration_psd_m2_per_s3 = 0.4 }
+[world.targets.motion]
+kind = "white-noise-acceleration"
+velocity_m_per_s = [2, 1]
+acceleration_psd_m2_per_s3 = 0.4
 [radio]
 topology = "full"
 [record]

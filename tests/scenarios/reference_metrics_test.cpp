@@ -89,7 +89,7 @@ class ReferenceMetrics : public InTempDirectory {
   }
 
  private:
-  const Catalog catalog_;
+  Catalog catalog_;
   LogCache logs_;
 };
 

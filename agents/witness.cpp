@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "filters/gaussian/distance.hpp"
 #include "sim/kernel/error.hpp"
 
 namespace hearsay {
@@ -226,6 +227,11 @@ Witness::Values Witness::measure(const TrackedBelief& tracked,
     at(values, Metric::kl_to_central_nats) =
         gaussian::kl_divergence_nats(reference, belief).value_or(kNone);
   }
+  if (wants(Metric::hellinger_to_central)) {
+    const gaussian::Belief& reference = central_[static_cast<std::size_t>(subject)].belief;
+    at(values, Metric::hellinger_to_central) =
+        gaussian::hellinger(reference, belief).value_or(kNone);
+  }
   const gaussian::Definiteness kind = assessment.definiteness;
   at(values, Metric::not_positive) =
       kind == gaussian::Definiteness::indefinite || kind == gaussian::Definiteness::overflow;
@@ -286,6 +292,15 @@ gaussian::Vector Witness::truth(int subject) const {
   return x;
 }
 
+double Witness::distance_m(const std::optional<gaussian::Vector>& state, int subject) const {
+  return state ? (*state - truth(subject)).head(axes_).norm() : kNone;
+}
+
+double Witness::distance_error_m(int subject, const gaussian::Belief& belief) {
+  advance();
+  return distance_m(gaussian::state(belief), subject);
+}
+
 void Witness::finish() {
   if (last_sample_ != simulation_.now()) sample();
   Record& record = simulation_.record();
@@ -314,7 +329,7 @@ void Witness::finish(Watched& watched) {
         watched.estimator ? watched.estimator->tracked(subject).belief : central_[s].belief;
     const gaussian::Assessment assessment = gaussian::assess(belief);
     const double sigma = claimed_sigma(belief, assessment);
-    distance += assessment.state ? (*assessment.state - truth(subject)).head(axes_).norm() : kNone;
+    distance += distance_m(assessment.state, subject);
     variance += sigma * sigma;
   }
   const auto subjects = static_cast<double>(central_.size());

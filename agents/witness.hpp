@@ -47,6 +47,9 @@ class Witness {
   /// An agent made a measurement now. @return its index in the subject's book.
   std::size_t measured(int subject, const gaussian::Belief& information);
 
+  /// Distance from the mean of a belief about a subject to the truth now, m; NaN without a mean.
+  double distance_error_m(int subject, const gaussian::Belief& belief);
+
   /// From now on `agent`'s beliefs are sampled. Agents in ascending number.
   void watch(AgentId agent, Estimator& estimator);
 
@@ -99,6 +102,7 @@ class Witness {
   void finish(Watched& watched);
   bool wants(Metric metric) const { return wanted_[static_cast<std::size_t>(metric)]; }
   gaussian::Vector truth(int subject) const;
+  double distance_m(const std::optional<gaussian::Vector>& state, int subject) const;
 
   Simulation& simulation_;
   Options options_;

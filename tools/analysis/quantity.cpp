@@ -113,6 +113,10 @@ MetricRule metric_rule(const std::string& name, bool chi2_band) {
       "y_error_m",
       "heading_error_rms_rad"};
   MetricRule rule{.name = name, .stored = name == "anees" ? "nees" : name};
+  if (name == "bytes_per_m_saved") {
+    rule.stored = "bytes_sent";
+    rule.over = "distance_saved_m";
+  }
   rule.rms = std::find(root_mean_squares.begin(), root_mean_squares.end(), name) !=
              root_mean_squares.end();
   rule.median = name == "agree_again_s";

@@ -55,7 +55,7 @@ Step step_from(const Point& now, const std::optional<Point>& before) {
   if (before) {
     const double lambda_before = s * std::fabs(omega - before->omega);
     const double gain = 11.0 * lambda_before * lambda_before;
-    if (gain < 1.0) {
+    if (gain < 1.0 && before->slope.first != now.slope.first) {
       omega = cubic_zero(*before, now);
       error *= gain;
     }

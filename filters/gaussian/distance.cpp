@@ -54,14 +54,21 @@ std::optional<double> nis_in_plane(const Belief& belief, const Belief& informati
   return std::isfinite(squared) ? std::optional(squared) : std::nullopt;
 }
 
-/// `t` without the stamps that are not among `kept`; nothing if a step cannot be marginalised.
-std::optional<Trajectory> restricted(Trajectory t, const std::vector<Stamp>& kept) {
-  for (int k = t.steps() - 1; k >= 0; --k) {
-    const Stamp stamp = t.stamps()[static_cast<std::size_t>(k)];
-    if (std::binary_search(kept.begin(), kept.end(), stamp)) continue;
-    if (!t.marginalise(k)) return std::nullopt;
+/// `t` without the stamps that are not among `kept`, of which there are some; nothing if a step
+/// cannot be marginalised. Every step is taken out as soon as the next is there, so that none is
+/// moved more than once.
+std::optional<Trajectory> restricted(const Trajectory& t, const std::vector<Stamp>& kept) {
+  const auto wanted = [&](Stamp stamp) { return std::ranges::binary_search(kept, stamp); };
+  const auto said = [&](int k) { return Belief{t.omega(k), t.xi(k)}; };
+  Trajectory out(t.dimension(), t.stamps()[0]);
+  out.update(0, said(0));
+  for (int k = 1; k < t.steps(); ++k) {
+    const bool keep_before = wanted(out.stamps().back());
+    out.append(t.stamps()[static_cast<std::size_t>(k)], t.omega_next(k - 1), said(k));
+    if (!keep_before && !out.marginalise(out.steps() - 2)) return std::nullopt;
   }
-  return t;
+  if (!wanted(out.stamps().back()) && !out.marginalise(out.steps() - 1)) return std::nullopt;
+  return out;
 }
 
 }  // namespace
@@ -134,9 +141,9 @@ std::optional<TrajectoryDistance> mahalanobis_squared(const Trajectory& a, const
   both += *on_b;
   TrajectoryFactor factor;
   if (factor.factor(both) != Definiteness::positive) return std::nullopt;
-  const std::vector<Vector>& x = factor.means();
-  const auto from_a = nees(*on_a, x);
-  const auto from_b = nees(*on_b, x);
+  const std::vector<Vector> x = factor.means();
+  const auto from_a = nees(*on_a, x, factor);
+  const auto from_b = nees(*on_b, x, factor);
   if (!from_a || !from_b) return std::nullopt;
   return TrajectoryDistance{*from_a + *from_b, static_cast<int>(common.size())};
 }

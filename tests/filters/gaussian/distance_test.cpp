@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "dense_trajectory.hpp"
 #include "samples.hpp"
 #include "sim/kernel/error.hpp"
 
@@ -146,17 +147,8 @@ struct Moments {
 };
 Moments dense_moments(const Trajectory& t, const std::vector<Stamp>& stamps) {
   const int n = t.dimension();
-  Dense omega = Dense::Zero(n * t.steps(), n * t.steps());
-  Eigen::VectorXd xi(n * t.steps());
-  for (int k = 0; k < t.steps(); ++k) {
-    omega.block(n * k, n * k, n, n) = t.omega(k);
-    xi.segment(n * k, n) = t.xi(k);
-    if (k + 1 == t.steps()) break;
-    omega.block(n * k, n * (k + 1), n, n) = t.omega_next(k);
-    omega.block(n * (k + 1), n * k, n, n) = t.omega_next(k).transpose();
-  }
-  const Dense sigma = omega.inverse();
-  const Eigen::VectorXd mu = sigma * xi;
+  const Dense sigma = dense(t).inverse();
+  const Eigen::VectorXd mu = sigma * dense_vector(t);
   const auto size = static_cast<Eigen::Index>(stamps.size());
   Moments out{Eigen::VectorXd(n * size), Dense(n * size, n * size)};
   for (Eigen::Index i = 0; i < size; ++i) {

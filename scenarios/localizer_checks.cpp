@@ -50,8 +50,9 @@ void check_localizers(const ScenarioUnderCheck& file) {
     localizers = localizers || agent.kind == "localizer";
     estimators = estimators || agent.kind == "estimator";
     if (localizers && estimators) {
-      file.fail(path["kind"], "a run has a central filter of poses or one of targets: not both "
-                              "\"localizer\" and \"estimator\"");
+      file.fail(path["kind"],
+                "a run has a central filter of poses or one of targets: not both "
+                "\"localizer\" and \"estimator\"");
     }
     if (agent.kind == "localizer") {
       check_localizer(file, agent, path);

@@ -64,20 +64,19 @@ EstimatorAgent::EstimatorAgent(Context& context, Witness& witness, Options optio
 std::unique_ptr<Estimator> EstimatorAgent::make_estimator(Context& context, Witness& witness,
                                                           const Options& options) {
   if (!options.window) {
-    return std::make_unique<StaticGaussianEstimator>(
-        StaticGaussianEstimator::Options{
-            .rule = options.rule,
-            .omega = options.omega,
-            .correction = options.correction,
-            .content = options.content,
-            .bits = options.bits,
-            .exact = options.policy.kind != TalkPolicyKind::event_triggered,
-            .subjects = options.subjects,
-            .dimension = options.dimension,
-            .motion = options.motion,
-            .ledgers = witness.ledgers(),
-            .workspace = &witness.workspace(),
-            .strangers = context.hears_strangers()},
+    return std::make_unique<GaussianEstimator>(
+        GaussianEstimator::Options{.rule = options.rule,
+                                   .omega = options.omega,
+                                   .correction = options.correction,
+                                   .content = options.content,
+                                   .bits = options.bits,
+                                   .exact = options.policy.kind != TalkPolicyKind::event_triggered,
+                                   .subjects = options.subjects,
+                                   .dimension = options.dimension,
+                                   .motion = options.motion,
+                                   .ledgers = witness.ledgers(),
+                                   .workspace = &witness.workspace(),
+                                   .strangers = context.hears_strangers()},
         context.neighbours());
   }
   if (const auto exchange = exchange_of(options.rule)) {

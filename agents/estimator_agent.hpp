@@ -8,7 +8,7 @@
 
 #include "agents/agent.hpp"
 #include "agents/alone.hpp"
-#include "agents/estimators/static_gaussian.hpp"
+#include "agents/estimators/gaussian.hpp"
 #include "agents/sensors/sensor.hpp"
 #include "agents/talk/periodic.hpp"
 #include "agents/talk/policy.hpp"

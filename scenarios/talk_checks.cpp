@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "agents/estimators/static_gaussian.hpp"
+#include "agents/estimators/gaussian.hpp"
 #include "scenarios/estimators.hpp"
 #include "scenarios/scenario_under_check.hpp"
 

@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "agents/estimators/static_gaussian.hpp"
+#include "agents/estimators/gaussian.hpp"
 #include "agents/witness.hpp"
 #include "sim/kernel/random.hpp"
 
@@ -117,7 +117,7 @@ class Company {
                                }}) {
     for (int i = 0; i < 3; ++i) {
       agents_.emplace_back(
-          StaticGaussianEstimator::Options{.dimension = 1, .ledgers = witness_.ledgers()},
+          GaussianEstimator::Options{.dimension = 1, .ledgers = witness_.ledgers()},
           std::vector<AgentId>{});
     }
     for (AgentId id = 0; id < 3; ++id) witness_.watch(id, agents_[static_cast<std::size_t>(id)]);
@@ -157,7 +157,7 @@ class Company {
 
   Simulation simulation_;
   Witness witness_;
-  std::vector<StaticGaussianEstimator> agents_;
+  std::vector<GaussianEstimator> agents_;
 };
 
 TEST(Witness, TellsHowFarEachIsFromTheFarthestOther) {

@@ -10,7 +10,7 @@
 #include <memory>
 #include <vector>
 
-#include "agents/estimators/static_gaussian.hpp"
+#include "agents/estimators/gaussian.hpp"
 #include "sim/kernel/random.hpp"
 
 namespace hearsay {
@@ -20,7 +20,7 @@ using gaussian::Belief;
 using gaussian::Matrix;
 using gaussian::Rule;
 using gaussian::Vector;
-using Options = StaticGaussianEstimator::Options;
+using Options = GaussianEstimator::Options;
 
 Belief scalar(double omega, double xi) {
   Belief b = Belief::unknown(1);
@@ -29,7 +29,7 @@ Belief scalar(double omega, double xi) {
   return b;
 }
 
-double omega(const StaticGaussianEstimator& e) { return e.tracked(0).belief.omega(0, 0); }
+double omega(const GaussianEstimator& e) { return e.tracked(0).belief.omega(0, 0); }
 
 /// Estimators that all know one another, and their measurements.
 class Fleet {
@@ -40,10 +40,10 @@ class Fleet {
     Options with_ledger = options;
     with_ledger.ledgers = &pool;
     for (int i = 0; i < agents; ++i) {
-      estimators.push_back(std::make_unique<StaticGaussianEstimator>(with_ledger, ids));
+      estimators.push_back(std::make_unique<GaussianEstimator>(with_ledger, ids));
     }
   }
-  StaticGaussianEstimator& operator[](int i) { return *estimators[static_cast<std::size_t>(i)]; }
+  GaussianEstimator& operator[](int i) { return *estimators[static_cast<std::size_t>(i)]; }
   void measure(int i, const Belief& z) { (*this)[i].measured(0, z, book.add(z)); }
   /// i talks, and all j with hears(j) hear it at once.
   template <class Hears>
@@ -63,7 +63,7 @@ class Fleet {
 
   LedgerPool pool;
   MeasurementBook book;
-  std::vector<std::unique_ptr<StaticGaussianEstimator>> estimators;
+  std::vector<std::unique_ptr<GaussianEstimator>> estimators;
 
  private:
   int agents_;

@@ -38,7 +38,7 @@ bool can_say_less(gaussian::Rule rule);
 /// @throws BrokenInvariant if the content does not go with the rule.
 gaussian::MessageForm message_form(gaussian::Rule rule, Content content);
 
-class StaticGaussianEstimator final : public Estimator {
+class GaussianEstimator final : public Estimator {
  public:
   struct Options {
     gaussian::Rule rule = gaussian::Rule::none;
@@ -55,7 +55,7 @@ class StaticGaussianEstimator final : public Estimator {
     bool strangers = false;  ///< others than `neighbours` may be heard, and are then remembered
   };
   /// `neighbours`: whom a memory is kept for, by number.
-  StaticGaussianEstimator(const Options& options, std::span<const AgentId> neighbours);
+  GaussianEstimator(const Options& options, std::span<const AgentId> neighbours);
 
   void advance(std::int64_t now) override;
   void measured(int subject, const gaussian::Belief& information, std::size_t measurement) override;

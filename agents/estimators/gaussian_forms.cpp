@@ -4,7 +4,7 @@
 #include <limits>
 #include <optional>
 
-#include "agents/estimators/static_gaussian.hpp"
+#include "agents/estimators/gaussian.hpp"
 #include "filters/gaussian/content.hpp"
 #include "filters/gaussian/split.hpp"
 #include "sim/kernel/error.hpp"
@@ -53,7 +53,7 @@ bool can_say_less(Rule rule) {
 }
 
 /// Puts less into entry `at` of the message; false if nothing can be said of it.
-bool StaticGaussianEstimator::shorten(std::size_t at, LedgerRider* rider) {
+bool GaussianEstimator::shorten(std::size_t at, LedgerRider* rider) {
   gaussian::BeliefEntry& entry = workspace_->outgoing.message.beliefs[at];
   std::optional<Belief> less;
   if (options_.content == Content::diagonal) {
@@ -74,7 +74,7 @@ bool StaticGaussianEstimator::shorten(std::size_t at, LedgerRider* rider) {
   return true;
 }
 
-double StaticGaussianEstimator::news_nats() const {
+double GaussianEstimator::news_nats() const {
   double most = 0.0;
   for (std::size_t s = 0; s < own_.size(); ++s) {
     const Belief& now = own_[s].belief;
@@ -86,14 +86,14 @@ double StaticGaussianEstimator::news_nats() const {
   return most;
 }
 
-void StaticGaussianEstimator::about_to_talk(int degree) {
+void GaussianEstimator::about_to_talk(int degree) {
   degree_ = degree;
   if (rule_.fuses != gaussian::Fuses::at_once) return;
   for (std::size_t s = 0; s < own_.size(); ++s) fuse_held(s, degree);
 }
 
-void StaticGaussianEstimator::hold(std::size_t subject, Neighbour& from, std::size_t at,
-                                   const LedgerRider* rider) {
+void GaussianEstimator::hold(std::size_t subject, Neighbour& from, std::size_t at,
+                             const LedgerRider* rider) {
   Held& held = from.held[subject];
   held.waits = true;
   held.said.belief = workspace_->incoming.message.beliefs[at].belief;
@@ -107,8 +107,8 @@ void StaticGaussianEstimator::hold(std::size_t subject, Neighbour& from, std::si
 }
 
 /// own = own_weight·own + weight·other.
-void StaticGaussianEstimator::add_weighted(TrackedBelief& own, double own_weight, double weight,
-                                           const TrackedBelief& other) const {
+void GaussianEstimator::add_weighted(TrackedBelief& own, double own_weight, double weight,
+                                     const TrackedBelief& other) const {
   own.belief *= own_weight;
   Belief weighted = other.belief;
   weighted *= weight;
@@ -116,7 +116,7 @@ void StaticGaussianEstimator::add_weighted(TrackedBelief& own, double own_weight
   if (keeps_ledger()) own.ledger.combine(own_weight, weight, other.ledger, 0.0, nullptr);
 }
 
-void StaticGaussianEstimator::fuse_held(std::size_t subject, int degree) {
+void GaussianEstimator::fuse_held(std::size_t subject, int degree) {
   to_fuse_.clear();
   TrackedBelief& own = own_[subject];
   const bool own_usable = usable(own.belief);
@@ -155,7 +155,7 @@ void StaticGaussianEstimator::fuse_held(std::size_t subject, int degree) {
 }
 
 /// Of the own belief and of those in to_fuse_. They add up to one.
-void StaticGaussianEstimator::find_weights(std::size_t subject, int degree) {
+void GaussianEstimator::find_weights(std::size_t subject, int degree) {
   weights_.assign(to_fuse_.size() + 1, 0.0);
   if (options_.rule == Rule::ci_batch) {
     matrices_.assign(1, &own_[subject].belief.omega);
@@ -173,8 +173,7 @@ void StaticGaussianEstimator::find_weights(std::size_t subject, int degree) {
   }
 }
 
-void StaticGaussianEstimator::fuse_by_parts(std::size_t subject, std::size_t at,
-                                            const Ledger* ledger) {
+void GaussianEstimator::fuse_by_parts(std::size_t subject, std::size_t at, const Ledger* ledger) {
   TrackedBelief& own = own_[subject];
   Belief& part = unsent_[subject].belief;
   const Belief& belief = workspace_->incoming.message.beliefs[at].belief;

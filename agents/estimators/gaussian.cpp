@@ -1,4 +1,4 @@
-#include "agents/estimators/static_gaussian.hpp"
+#include "agents/estimators/gaussian.hpp"
 
 #include <algorithm>
 
@@ -26,8 +26,7 @@ RiderPtr LedgerPool::make(LedgerRider*& rider) {
   return RiderPtr(rider);
 }
 
-StaticGaussianEstimator::StaticGaussianEstimator(const Options& options,
-                                                 std::span<const AgentId> neighbours)
+GaussianEstimator::GaussianEstimator(const Options& options, std::span<const AgentId> neighbours)
     : options_(options),
       rule_(gaussian::info(options.rule)),
       form_(message_form(options.rule, options.content)),
@@ -50,7 +49,7 @@ StaticGaussianEstimator::StaticGaussianEstimator(const Options& options,
   for (const AgentId id : neighbours) neighbours_.push_back(make_neighbour(id));
 }
 
-StaticGaussianEstimator::Neighbour StaticGaussianEstimator::make_neighbour(AgentId id) const {
+GaussianEstimator::Neighbour GaussianEstimator::make_neighbour(AgentId id) const {
   Neighbour neighbour{.id = id, .memory = {}, .held = {}};
   if (rule_.memory == Memory::held) {
     neighbour.held.assign(own_.size(), {.said = unknown(), .fresh = unknown()});
@@ -60,12 +59,12 @@ StaticGaussianEstimator::Neighbour StaticGaussianEstimator::make_neighbour(Agent
   return neighbour;
 }
 
-TrackedBelief StaticGaussianEstimator::unknown() const {
+TrackedBelief GaussianEstimator::unknown() const {
   return {Belief::unknown(options_.dimension),
           keeps_ledger() && options_.motion ? Ledger::moving(options_.dimension) : Ledger{}};
 }
 
-void StaticGaussianEstimator::advance(std::int64_t now) {
+void GaussianEstimator::advance(std::int64_t now) {
   if (!options_.motion) return;
   require(now >= stamp_, "an estimator does not go back in time");
   for (; stamp_ < now; ++stamp_) {
@@ -77,7 +76,7 @@ void StaticGaussianEstimator::advance(std::int64_t now) {
   }
 }
 
-void StaticGaussianEstimator::predict(TrackedBelief& tracked, std::int64_t step) const {
+void GaussianEstimator::predict(TrackedBelief& tracked, std::int64_t step) const {
   if (tracked.belief.omega.isZero(0.0) && tracked.ledger.weights().empty()) return;
   const gaussian::Prediction predicted =
       gaussian::predict_with_gain(tracked.belief, options_.motion->step);
@@ -86,8 +85,7 @@ void StaticGaussianEstimator::predict(TrackedBelief& tracked, std::int64_t step)
   tracked.ledger.predict(predicted.F, predicted.belief.omega, static_cast<std::size_t>(step));
 }
 
-void StaticGaussianEstimator::measured(int subject, const Belief& information,
-                                       std::size_t measurement) {
+void GaussianEstimator::measured(int subject, const Belief& information, std::size_t measurement) {
   const auto s = static_cast<std::size_t>(subject);
   const auto use = [&](TrackedBelief& tracked) {
     tracked.belief += information;
@@ -98,7 +96,7 @@ void StaticGaussianEstimator::measured(int subject, const Belief& information,
   ++counts_.measurements;
 }
 
-StaticGaussianEstimator::Speech StaticGaussianEstimator::speech(AgentId neighbour) {
+GaussianEstimator::Speech GaussianEstimator::speech(AgentId neighbour) {
   const Neighbour* to = neighbour == no_agent ? nullptr : find(neighbour);
   require(rule_.sends != Sends::belief_less_heard || to != nullptr,
           "a rule that speaks to each neighbour needs one");
@@ -135,8 +133,8 @@ StaticGaussianEstimator::Speech StaticGaussianEstimator::speech(AgentId neighbou
 }
 
 /// Fills in entry `at` of the message; false if there is nothing to say.
-bool StaticGaussianEstimator::put_into_words(std::size_t subject, const Neighbour* to,
-                                             std::size_t at, LedgerRider* rider) {
+bool GaussianEstimator::put_into_words(std::size_t subject, const Neighbour* to, std::size_t at,
+                                       LedgerRider* rider) {
   const bool update = rule_.sends == Sends::local_update;
   const bool less_heard = rule_.sends == Sends::belief_less_heard;
   const TrackedBelief& says = update ? unsent_[subject] : own_[subject];
@@ -157,7 +155,7 @@ bool StaticGaussianEstimator::put_into_words(std::size_t subject, const Neighbou
   return options_.content == Content::belief || shorten(at, rider);
 }
 
-void StaticGaussianEstimator::sent(AgentId neighbour) {
+void GaussianEstimator::sent(AgentId neighbour) {
   if (!last_fresh_.empty()) last_fresh_ = unsent_;
   for (TrackedBelief& unsent : unsent_) unsent = unknown();
   for (std::size_t s = 0; s < own_.size(); ++s) last_said_[s] = own_[s].belief;
@@ -167,8 +165,7 @@ void StaticGaussianEstimator::sent(AgentId neighbour) {
   }
 }
 
-void StaticGaussianEstimator::heard(AgentId from, std::span<const std::byte> bytes,
-                                    const Rider* rider) {
+void GaussianEstimator::heard(AgentId from, std::span<const std::byte> bytes, const Rider* rider) {
   Neighbour* sender = find(from);
   const gaussian::Message& message = workspace_->incoming.message;
   if (sender == nullptr || !decode(bytes, workspace_->incoming) || outdated(*sender, message)) {
@@ -203,8 +200,8 @@ void StaticGaussianEstimator::heard(AgentId from, std::span<const std::byte> byt
 }
 
 /// A belief about a moving state, which is brought to the present first.
-void StaticGaussianEstimator::fuse_older(int subject, Neighbour& from, const Belief& belief,
-                                         const Ledger* ledger) {
+void GaussianEstimator::fuse_older(int subject, Neighbour& from, const Belief& belief,
+                                   const Ledger* ledger) {
   received_.belief = belief;
   if (ledger != nullptr) received_.ledger = *ledger;
   std::int64_t step = workspace_->incoming.stamp / options_.motion->period.nanoseconds();
@@ -212,8 +209,8 @@ void StaticGaussianEstimator::fuse_older(int subject, Neighbour& from, const Bel
   fuse(subject, from, received_.belief, ledger ? &received_.ledger : nullptr);
 }
 
-bool StaticGaussianEstimator::decode(std::span<const std::byte> bytes,
-                                     gaussian::StampedMessage& message) const {
+bool GaussianEstimator::decode(std::span<const std::byte> bytes,
+                               gaussian::StampedMessage& message) const {
   if (!options_.motion) {
     return gaussian::decode(form_, bytes, message.message, workspace_->incoming_extras);
   }
@@ -222,7 +219,7 @@ bool StaticGaussianEstimator::decode(std::span<const std::byte> bytes,
          message.stamp <= stamp_ * period && message.stamp % period == 0;
 }
 
-bool StaticGaussianEstimator::outdated(Neighbour& from, const gaussian::Message& message) const {
+bool GaussianEstimator::outdated(Neighbour& from, const gaussian::Message& message) const {
   // Algorithm 3.4 as printed adds whatever arrives; only rules that replace need an order, and
   // those for which what was fresh once is not any more.
   const bool ordered = rule_.memory == Memory::last_heard || rule_.memory == Memory::held ||
@@ -232,8 +229,8 @@ bool StaticGaussianEstimator::outdated(Neighbour& from, const gaussian::Message&
   return message.count <= from.count;
 }
 
-void StaticGaussianEstimator::fuse(int subject, Neighbour& from, const Belief& belief,
-                                   const Ledger* ledger) {
+void GaussianEstimator::fuse(int subject, Neighbour& from, const Belief& belief,
+                             const Ledger* ledger) {
   const auto s = static_cast<std::size_t>(subject);
   TrackedBelief& own = own_[s];
   if (rule_.fuses == Fuses::by_direction) return fuse_by_direction(own, belief, ledger);
@@ -265,13 +262,13 @@ void StaticGaussianEstimator::fuse(int subject, Neighbour& from, const Belief& b
   note_gain(before, belief, own.belief);
 }
 
-void StaticGaussianEstimator::fuse_by_direction(TrackedBelief& own, const Belief& belief,
-                                                const Ledger* ledger) {
+void GaussianEstimator::fuse_by_direction(TrackedBelief& own, const Belief& belief,
+                                          const Ledger* ledger) {
   take(own, gaussian::fuse_by_direction(options_.rule, own.belief, belief), belief, ledger);
 }
 
-void StaticGaussianEstimator::take(TrackedBelief& own, const gaussian::DirectionalFusion& fusion,
-                                   const Belief& belief, const Ledger* ledger) {
+void GaussianEstimator::take(TrackedBelief& own, const gaussian::DirectionalFusion& fusion,
+                             const Belief& belief, const Ledger* ledger) {
   if (fusion.skipped != nullptr) {
     ++counts_.skipped;
     return;
@@ -284,8 +281,8 @@ void StaticGaussianEstimator::take(TrackedBelief& own, const gaussian::Direction
   }
 }
 
-void StaticGaussianEstimator::note_gain(const Belief& before, const Belief& received,
-                                        const Belief& after) {
+void GaussianEstimator::note_gain(const Belief& before, const Belief& received,
+                                  const Belief& after) {
   const auto a = gaussian::claimed_sigma(before);
   const auto b = gaussian::claimed_sigma(received);
   const auto c = gaussian::claimed_sigma(after);
@@ -293,12 +290,12 @@ void StaticGaussianEstimator::note_gain(const Belief& before, const Belief& rece
   counts_.fusion_gain_max = std::max(counts_.fusion_gain_max, 1.0 - *c / std::min(*a, *b));
 }
 
-void StaticGaussianEstimator::new_incarnation() {
+void GaussianEstimator::new_incarnation() {
   ++incarnation_;
   next_count_ = 1;
 }
 
-void StaticGaussianEstimator::forget() {
+void GaussianEstimator::forget() {
   new_incarnation();
   for (std::vector<TrackedBelief>* beliefs : {&own_, &unsent_, &last_fresh_}) {
     for (TrackedBelief& tracked : *beliefs) tracked = unknown();
@@ -310,7 +307,7 @@ void StaticGaussianEstimator::forget() {
   for (Neighbour& neighbour : neighbours_) neighbour = make_neighbour(neighbour.id);
 }
 
-StaticGaussianEstimator::Neighbour* StaticGaussianEstimator::find(AgentId id) {
+GaussianEstimator::Neighbour* GaussianEstimator::find(AgentId id) {
   const auto found = std::lower_bound(neighbours_.begin(), neighbours_.end(), id,
                                       [](const Neighbour& n, AgentId i) { return n.id < i; });
   if (found != neighbours_.end() && found->id == id) return &*found;

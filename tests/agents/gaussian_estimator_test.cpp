@@ -1,4 +1,4 @@
-#include "agents/estimators/static_gaussian.hpp"
+#include "agents/estimators/gaussian.hpp"
 
 #include <gtest/gtest.h>
 
@@ -34,9 +34,9 @@ class Pair {
   explicit Pair(Rule rule)
       : a(options(rule), std::array<AgentId, 1>{1}), b(options(rule), std::array<AgentId, 1>{0}) {}
 
-  static Letter post(StaticGaussianEstimator& from, AgentId to) {
+  static Letter post(GaussianEstimator& from, AgentId to) {
     const bool each = gaussian::info(from.rule()).sends == gaussian::Sends::belief_less_heard;
-    StaticGaussianEstimator::Speech speech = from.speech(each ? to : no_agent);
+    GaussianEstimator::Speech speech = from.speech(each ? to : no_agent);
     Letter letter{{speech.bytes.begin(), speech.bytes.end()}, std::move(speech.rider)};
     from.sent(each ? to : no_agent);
     return letter;
@@ -47,21 +47,21 @@ class Pair {
   void at_b(const Letter& letter) { b.heard(0, letter.bytes, letter.rider.get()); }
 
   LedgerPool pool;
-  StaticGaussianEstimator a, b;
+  GaussianEstimator a, b;
 
  private:
-  StaticGaussianEstimator::Options options(Rule rule) {
+  GaussianEstimator::Options options(Rule rule) {
     return {.rule = rule, .subjects = 1, .dimension = 1, .ledgers = &pool};
   }
 };
 
-double omega(const StaticGaussianEstimator& e) { return e.tracked(0).belief.omega(0, 0); }
-double weight(const StaticGaussianEstimator& e, std::size_t k) {
+double omega(const GaussianEstimator& e) { return e.tracked(0).belief.omega(0, 0); }
+double weight(const GaussianEstimator& e, std::size_t k) {
   const auto weights = e.tracked(0).ledger.weights();
   return k < weights.size() ? weights[k] : 0.0;
 }
 
-TEST(StaticGaussianEstimator, ChannelAddsEachMeasurementOnceWhenTalkIsInTurn) {
+TEST(GaussianEstimator, ChannelAddsEachMeasurementOnceWhenTalkIsInTurn) {
   Pair pair(Rule::channel);
   pair.a.measured(0, scalar(1, 0), 0);
   pair.b.measured(0, scalar(2, 0), 1);
@@ -74,7 +74,7 @@ TEST(StaticGaussianEstimator, ChannelAddsEachMeasurementOnceWhenTalkIsInTurn) {
   EXPECT_DOUBLE_EQ(weight(pair.a, 1), 1.0);
 }
 
-TEST(StaticGaussianEstimator, ChannelLosesInformationWhenBeliefsCross) {
+TEST(GaussianEstimator, ChannelLosesInformationWhenBeliefsCross) {
   // Both book their own belief as common before the other's arrives: A + B − A = B.
   Pair pair(Rule::channel);
   pair.a.measured(0, scalar(1, 0), 0);
@@ -88,7 +88,7 @@ TEST(StaticGaussianEstimator, ChannelLosesInformationWhenBeliefsCross) {
   EXPECT_DOUBLE_EQ(weight(pair.a, 1), 1.0);
 }
 
-TEST(StaticGaussianEstimator, ChannelRobustIsExactWhenBeliefsCross) {
+TEST(GaussianEstimator, ChannelRobustIsExactWhenBeliefsCross) {
   Pair pair(Rule::channel_robust);
   pair.a.measured(0, scalar(1, 0), 0);
   pair.b.measured(0, scalar(2, 0), 1);
@@ -101,7 +101,7 @@ TEST(StaticGaussianEstimator, ChannelRobustIsExactWhenBeliefsCross) {
   }
 }
 
-TEST(StaticGaussianEstimator, ChannelRobustIsExactUnderLossDuplicationAndReordering) {
+TEST(GaussianEstimator, ChannelRobustIsExactUnderLossDuplicationAndReordering) {
   Pair pair(Rule::channel_robust);
   pair.a.measured(0, scalar(1, 0), 0);
   const Letter first = pair.a_to_b();
@@ -119,7 +119,7 @@ TEST(StaticGaussianEstimator, ChannelRobustIsExactUnderLossDuplicationAndReorder
   for (std::size_t k = 0; k < 3; ++k) EXPECT_DOUBLE_EQ(weight(pair.a, k), 1.0);
 }
 
-TEST(StaticGaussianEstimator, ChannelRobustHearsARebootedNeighbourAgain) {
+TEST(GaussianEstimator, ChannelRobustHearsARebootedNeighbourAgain) {
   Pair pair(Rule::channel_robust);
   pair.a.measured(0, scalar(1, 0), 0);
   for (int i = 0; i < 5; ++i) pair.at_b(pair.a_to_b());
@@ -129,7 +129,7 @@ TEST(StaticGaussianEstimator, ChannelRobustHearsARebootedNeighbourAgain) {
   EXPECT_DOUBLE_EQ(omega(pair.b), 5.0);
 }
 
-TEST(StaticGaussianEstimator, NaiveCountsWhatItHearsTwiceTwice) {
+TEST(GaussianEstimator, NaiveCountsWhatItHearsTwiceTwice) {
   Pair pair(Rule::naive);
   pair.a.measured(0, scalar(1, 0), 0);
   const Letter letter = pair.a_to_b();
@@ -139,7 +139,7 @@ TEST(StaticGaussianEstimator, NaiveCountsWhatItHearsTwiceTwice) {
   EXPECT_DOUBLE_EQ(weight(pair.b, 0), 2.0);
 }
 
-TEST(StaticGaussianEstimator, WeightsTimesMeasurementsGiveTheBeliefUnderEveryRule) {
+TEST(GaussianEstimator, WeightsTimesMeasurementsGiveTheBeliefUnderEveryRule) {
   for (const gaussian::RuleInfo& rule : gaussian::rules()) {
     if (rule.sends == gaussian::Sends::nothing) continue;
     Pair pair(rule.rule);
@@ -147,7 +147,7 @@ TEST(StaticGaussianEstimator, WeightsTimesMeasurementsGiveTheBeliefUnderEveryRul
     Stream draws(11, Purpose("test"), Entity::agent(0));
     for (int step = 0; step < 40; ++step) {
       const double amount = draws.uniform(0.5, 2.0);
-      StaticGaussianEstimator& who = draws.bernoulli(0.5) ? pair.a : pair.b;
+      GaussianEstimator& who = draws.bernoulli(0.5) ? pair.a : pair.b;
       who.measured(0, scalar(amount, 0), information.size());
       information.push_back(amount);
       const Letter ab = pair.a_to_b();
@@ -171,7 +171,7 @@ class Line {
   explicit Line(Rule rule) : rule_(rule) {
     const auto with = [&](std::vector<AgentId> neighbours) {
       agents.emplace_back(
-          StaticGaussianEstimator::Options{
+          GaussianEstimator::Options{
               .rule = rule, .subjects = 1, .dimension = 1, .ledgers = &pool_},
           neighbours);
     };
@@ -201,14 +201,14 @@ class Line {
     return found;
   }
 
-  std::vector<StaticGaussianEstimator> agents;
+  std::vector<GaussianEstimator> agents;
 
  private:
   Rule rule_;
   LedgerPool pool_;
 };
 
-TEST(StaticGaussianEstimator, ChannelRobustGivesBackWhatANeighbourSaidBeforeItForgot) {
+TEST(GaussianEstimator, ChannelRobustGivesBackWhatANeighbourSaidBeforeItForgot) {
   Line line(Rule::channel_robust);
   for (std::size_t i = 0; i < 3; ++i) ASSERT_DOUBLE_EQ(omega(line.agents[i]), 7.0);
   const Letter old = line.post(1, 0);  // under way when the middle one fails
@@ -229,7 +229,7 @@ TEST(StaticGaussianEstimator, ChannelRobustGivesBackWhatANeighbourSaidBeforeItFo
   }
 }
 
-TEST(StaticGaussianEstimator, ChannelCountsTwiceWhatItsNeighboursTellItAfterItForgot) {
+TEST(GaussianEstimator, ChannelCountsTwiceWhatItsNeighboursTellItAfterItForgot) {
   Line line(Rule::channel);
   line.talk(0);
   line.talk(2);
@@ -242,7 +242,7 @@ TEST(StaticGaussianEstimator, ChannelCountsTwiceWhatItsNeighboursTellItAfterItFo
   EXPECT_EQ(line.weights(1), (std::vector<double>{2, 2, 2, 0}));
 }
 
-TEST(StaticGaussianEstimator, CovarianceIntersectionHearsAfterItForgotWhatItHadSaid) {
+TEST(GaussianEstimator, CovarianceIntersectionHearsAfterItForgotWhatItHadSaid) {
   Line line(Rule::ci_det);
   const double known = omega(line.agents[0]);
   ASSERT_DOUBLE_EQ(known, 4.0);  // the best of the three
@@ -251,7 +251,7 @@ TEST(StaticGaussianEstimator, CovarianceIntersectionHearsAfterItForgotWhatItHadS
   EXPECT_DOUBLE_EQ(omega(line.agents[1]), known);
 }
 
-TEST(StaticGaussianEstimator, RefusesWhatIsMalformedOrFromAStranger) {
+TEST(GaussianEstimator, RefusesWhatIsMalformedOrFromAStranger) {
   Pair pair(Rule::naive);
   pair.a.measured(0, scalar(1, 0), 0);
   Letter letter = pair.a_to_b();
@@ -262,7 +262,7 @@ TEST(StaticGaussianEstimator, RefusesWhatIsMalformedOrFromAStranger) {
   EXPECT_DOUBLE_EQ(omega(pair.b), 0.0);
 }
 
-TEST(StaticGaussianEstimator, SaysNothingWhileItKnowsNothing) {
+TEST(GaussianEstimator, SaysNothingWhileItKnowsNothing) {
   Pair pair(Rule::ci_det);
   EXPECT_TRUE(pair.a.speech(no_agent).bytes.empty());
 }

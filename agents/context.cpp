@@ -1,6 +1,10 @@
 #include "agents/context.hpp"
 
+#include <cmath>
 #include <utility>
+
+#include "sim/kernel/error.hpp"
+#include "sim/world/motion.hpp"
 
 namespace hearsay {
 
@@ -18,6 +22,23 @@ Stream Context::stream(std::string_view purpose) const {
 
 Stream Context::stream_at(std::string_view purpose, std::uint64_t count) const {
   return simulation_.stream_at(Purpose(purpose), Entity::agent(id()), count);
+}
+
+Time Context::go_to(const std::array<double, 2>& place_m, double speed_m_per_s) {
+  require(steered(), "an agent that is not steered cannot go anywhere");
+  const Point here = position();
+  if (here[0] == place_m[0] && here[1] == place_m[1]) {
+    stay();
+    return now();
+  }
+  const Leg leg = motion::leg_to(now(), here, {place_m[0], place_m[1], here[2]}, speed_m_per_s);
+  service_.steers->steer(id(), leg);
+  return leg.end;
+}
+
+void Context::stay() {
+  require(steered(), "an agent that is not steered cannot stay");
+  service_.steers->steer(id(), {.begin = now(), .from_m = position()});
 }
 
 bool Context::send(const Outgoing& packet) {

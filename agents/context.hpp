@@ -2,6 +2,7 @@
 // record.
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "net/gossip.hpp"
+#include "net/movement.hpp"
 #include "net/radio.hpp"
 #include "sim/kernel/process.hpp"
 #include "sim/kernel/simulation.hpp"
@@ -26,8 +28,9 @@ class Context {
   };
   /// How what it says travels; by default straight over the radio.
   struct Service {
-    bool acknowledged = false;  ///< repeated until acknowledged
-    Gossip* gossip = nullptr;   ///< instead, by store-and-forward or a blackboard; not owned
+    bool acknowledged = false;   ///< repeated until acknowledged
+    Gossip* gossip = nullptr;    ///< instead, by store-and-forward or a blackboard; not owned
+    Movement* steers = nullptr;  ///< what the agent is steered by, if it may be; not owned
   };
   /// `simulation`, `radio` and the service must outlive the context.
   Context(Simulation& simulation, Radio& radio, Identity identity, Service service);
@@ -60,6 +63,14 @@ class Context {
 
   /// Where the agent is, exact at any time. @throws BrokenInvariant if the scenario does not say.
   Point position() const { return radio_.position(id()); }
+  /// True if the agent decides where it goes (agents.motion.kind = "steered").
+  bool steered() const { return service_.steers != nullptr; }
+  /// Turns straight to a place in the plane, at its altitude, and stays there, unless it is sent
+  /// elsewhere before. Speed > 0 m/s. @return when it will be there: now, if it is there.
+  /// @throws BrokenInvariant for one that is not steered, another speed, or a place beyond ±1e12 m.
+  Time go_to(const std::array<double, 2>& place_m, double speed_m_per_s);
+  /// Stops where it is.
+  void stay();
   /// False while the agent is down: it cannot look, talk or hear.
   bool up() const { return radio_.up(id()); }
   /// Whom a broadcast reaches now if nothing is lost, by number. Valid until anybody asks again.

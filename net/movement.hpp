@@ -1,6 +1,8 @@
 // Keeps a Places right while a run goes on: hands it leg after leg, and files agents anew in time.
 #pragma once
 
+#include <vector>
+
 #include "net/path_source.hpp"
 #include "net/places.hpp"
 #include "sim/kernel/ids.hpp"
@@ -10,7 +12,8 @@
 namespace hearsay {
 
 /// One event an agent, in Phase::world, whenever its leg ends or its filing does; none for what
-/// stands still for ever. So everybody is in place when others look, at any instant.
+/// stands still for ever, until it is steered. So everybody is in place when others look, at any
+/// instant.
 class Movement {
  public:
   /// Sets all agents of `places` at the simulation's now(). Legs that are over by then are passed
@@ -20,7 +23,17 @@ class Movement {
   Movement(const Movement&) = delete;
   Movement& operator=(const Movement&) = delete;
 
+  /// `agent` leaves its path for good: from now on it moves along `leg`, which begins now where it
+  /// is, and stays where that ends, until it is steered again.
+  /// @throws BrokenInvariant for a leg that begins at another time or place (by more than 1 mm), or
+  /// that is over.
+  void steer(AgentId agent, const Leg& leg);
+
  private:
+  struct Course {
+    EventId next;          // the event at which it goes on
+    bool steered = false;  // it has left its path
+  };
   Leg leg_after(AgentId agent, const Leg& before);
   void go_on(AgentId agent);
   void wait(AgentId agent, Time until);
@@ -28,6 +41,7 @@ class Movement {
   Simulation& simulation_;
   Places& places_;
   PathSource& paths_;
+  std::vector<Course> courses_;  // by agent
 };
 
 }  // namespace hearsay

@@ -11,8 +11,9 @@ void describe(V& v, MotionSpec& s) {
   const Allowed coordinate = between(-1e12, 1e12);
   v.field("kind", s.kind,
           one_of({"hover", "waypoints", "lawn-mower", "random-waypoint", "gauss-markov", "track",
-                  "white-noise-acceleration"}),
-          "how it moves; \"track\" is for agents, \"white-noise-acceleration\" for targets");
+                  "steered", "white-noise-acceleration"}),
+          "how it moves; \"track\" and \"steered\", as the agent itself decides, are for agents, "
+          "\"white-noise-acceleration\" for targets");
   v.field("altitude_m", s.altitude_m, coordinate, "z, always the same");
   v.field("points_m", s.points_m, coordinate, "waypoints: from one to the next");
   v.field("speed_m_per_s", s.speed_m_per_s, greater_than_zero(), "waypoints, lawn-mower");

@@ -123,8 +123,8 @@ void MotionChecker::check(const KeyPath& path, AgentSpec& agent, std::size_t fir
 void MotionChecker::check(const KeyPath& path, const TargetSpec& target, int number) const {
   const MotionSpec& spec = *target.motion;
   const KeyPath motion_path = path["motion"];
-  if (spec.kind == "track") {
-    file_.fail(motion_path["kind"], "\"track\" is for agents, not for targets");
+  if (spec.kind == "track" || spec.kind == "steered") {
+    file_.fail(motion_path["kind"], "\"" + spec.kind + "\" is for agents, not for targets");
   }
   check_keys(motion_path, spec);
   check_values(motion_path, spec);
@@ -163,8 +163,8 @@ void MotionChecker::check_keys(const KeyPath& path, const MotionSpec& spec) cons
 
 void MotionChecker::check_place(const KeyPath& path, const AgentSpec& agent) const {
   const std::string& kind = agent.motion->kind;
-  if (kind == "hover" && !placed(agent)) {
-    file_.fail(path["motion"], "kind \"hover\" needs to know where: position_m or circle");
+  if ((kind == "hover" || kind == "steered") && !placed(agent)) {
+    file_.fail(path["motion"], "kind \"" + kind + "\" needs to know where: position_m or circle");
   }
   const bool draws = kind == "random-waypoint" || kind == "gauss-markov";
   if (!placed(agent) || (!draws && kind != "track")) return;

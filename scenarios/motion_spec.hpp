@@ -17,7 +17,7 @@ using Tracks = std::vector<std::vector<motion::TrackSample>>;
 /// Only altitude_m belongs to every kind. What is marked with a kind is for that one alone.
 struct MotionSpec {
   /// "hover" | "waypoints" | "lawn-mower" | "random-waypoint" | "gauss-markov" | "track" |
-  /// "white-noise-acceleration", of targets alone
+  /// "steered" | "white-noise-acceleration", of targets alone
   std::string kind = "hover";
   double altitude_m = 0.0;
   std::vector<std::array<double, 2>> points_m;  ///< waypoints: needed

@@ -269,6 +269,7 @@ Models motions() {
            "T. Camp, J. Boleng, V. Davies, Wireless Comm. Mobile Computing 2(5), 2002"},
           {"motion", "track", by, "straight between places at times from a CSV file",
            keys({"file"}), ""},
+          {"motion", "steered", by, "where the agent decides to go (Context::go_to)", keys({}), ""},
           {"motion", "white-noise-acceleration", by,
            "of targets alone: speed and course change by white noise, as a tracking filter expects",
            keys({"velocity_m_per_s", "acceleration_psd_m2_per_s3"}), "Merino 2007, eq. 3.58-3.59"}};

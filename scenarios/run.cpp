@@ -170,8 +170,10 @@ void Run::build_agents(const Catalog& catalog) {
                           .name = prepared_->names[i],
                           .kind = spec.kind,
                           .parameters = spec.parameters},
-        Context::Service{.acknowledged = spec.talk.service == "acknowledged",
-                         .gossip = gossips_.back().get()}));
+        Context::Service{
+            .acknowledged = spec.talk.service == "acknowledged",
+            .gossip = gossips_.back().get(),
+            .steers = spec.motion && spec.motion->kind == "steered" ? movement_.get() : nullptr}));
     agents_.push_back(make_agent(id, catalog));
     if (gossips_.back()) {
       gossips_.back()->attach(*agents_.back());

@@ -197,6 +197,15 @@ Leg straight(Time begin, const Point& from_m, const Point& to_m, double speed_m_
   return leg;
 }
 
+Leg leg_to(Time begin, const Point& from_m, const Point& to_m, double speed_m_per_s) {
+  constexpr double farthest_m = 1e12;
+  require(speed_m_per_s > 0.0 && std::isfinite(speed_m_per_s), "a leg needs a speed above 0");
+  require(std::fabs(to_m[0]) <= farthest_m && std::fabs(to_m[1]) <= farthest_m &&
+              std::isfinite(to_m[2]) && from_m != to_m,
+          "a leg leads to another place, within 1e12 m");
+  return straight(begin, from_m, to_m, speed_m_per_s);
+}
+
 std::unique_ptr<Motion> make(const Hover& options) {
   check_point(options.position_m, "position_m");
   check_altitude(options.altitude_m);

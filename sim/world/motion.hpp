@@ -136,6 +136,10 @@ std::unique_ptr<Motion> make(const Track& options);
 std::unique_ptr<Motion> make(const RandomWaypoint& options, std::uint64_t seed, AgentId agent);
 std::unique_ptr<Motion> make(const GaussMarkov& options, std::uint64_t seed, AgentId agent);
 
+/// A straight leg from a place to another, as above. @throws BrokenInvariant for a speed that is
+/// not above 0 and finite, a place beyond ±1e12 m, or one and the same place.
+Leg leg_to(Time begin, const Point& from_m, const Point& to_m, double speed_m_per_s);
+
 /// Mean distance of two places drawn evenly from a rectangle with sides a, b > 0: 0.5214 for the
 /// unit square (L. Santaló, Integral Geometry and Geometric Probability, 1976, section 4.2).
 double mean_distance_m(double a_m, double b_m);

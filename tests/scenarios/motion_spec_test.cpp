@@ -135,7 +135,7 @@ TEST_F(MotionSpecs, KeysOfOtherKindsAreRefused) {
 TEST_F(MotionSpecs, ValuesOutOfRangeAreRefused) {
   EXPECT_EQ(error_with("kind = \"fly\""),
             "s.toml:3: agents[0].motion.kind = \"fly\": unknown; allowed: hover, waypoints, "
-            "lawn-mower, random-waypoint, gauss-markov, track, white-noise-acceleration");
+            "lawn-mower, random-waypoint, gauss-markov, track, steered, white-noise-acceleration");
   EXPECT_EQ(error_with("speed = 1"),
             "s.toml:3: unknown key 'speed' in [agents[0].motion]; allowed: kind, altitude_m, "
             "points_m, speed_m_per_s, pause_s, repeat, area_m, lane_spacing_m, speed_min_m_per_s, "

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "agents/agent.hpp"
+#include "agents/dead_reckoning.hpp"
 #include "agents/journey.hpp"
 #include "agents/pose_witness.hpp"
 #include "agents/talk/periodic.hpp"
@@ -68,6 +69,7 @@ class LocalizerAgent final : public Agent {
   void meet_companion(const Encounter& encounter, const localization::RelativeSighting& seen);
   Process talk();
   void say(std::uint64_t tick, AgentId about, Time when, const localization::Place& place);
+  void told_of_sender(Companion& from, Time when, const localization::Place& place);
   void told_of_self(Companion& from, Time when, const localization::Place& place);
   void count(localization::Taken taken);
   localization::Fusion fusion() const { return {options_.rule, options_.filter.gate}; }
@@ -75,7 +77,7 @@ class LocalizerAgent final : public Agent {
   PoseWitness& witness_;
   Options options_;
   localization::PoseFilter filter_;
-  localization::DeadReckoning reckoning_;
+  DeadReckoning reckoning_;
   Odometer odometer_;
   NameId message_kind_;
   std::vector<Companion> companions_;  // by number

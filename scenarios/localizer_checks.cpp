@@ -12,8 +12,15 @@ void check_localizer(const ScenarioUnderCheck& file, const AgentSpec& agent, con
   const KeyPath sensor = path["sensor"];
   const KeyPath talk = path["talk"];
   const KeyPath localizer = path["localizer"];
+  const KeyPath top;
+  const KeyPath world = top["world"];
+  const KeyPath log = world["log"];
   if (!file.scenario.world.log) {
     file.fail(path["kind"], "\"localizer\" needs a [world.log] with odometry");
+  }
+  if (file.scenario.world.log && file.scenario.world.log->subjects != "landmarks") {
+    file.fail(log["subjects"],
+              "without effect: agents of kind \"localizer\" believe in their own poses alone");
   }
   if (agent.sensor.kind != "log") {
     file.fail(sensor["kind"],
@@ -50,8 +57,9 @@ void check_localizers(const ScenarioUnderCheck& file) {
     localizers = localizers || agent.kind == "localizer";
     estimators = estimators || agent.kind == "estimator";
     if (localizers && estimators) {
-      file.fail(path["kind"], "a run has a central filter of poses or one of targets: not both "
-                              "\"localizer\" and \"estimator\"");
+      file.fail(path["kind"],
+                "a run has a central filter of poses or one of targets: not both "
+                "\"localizer\" and \"estimator\"");
     }
     if (agent.kind == "localizer") {
       check_localizer(file, agent, path);

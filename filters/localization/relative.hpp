@@ -5,12 +5,8 @@
 // not show how a companion is turned, so that every message informs of two directions out of three.
 #pragma once
 
-#include <optional>
-#include <vector>
-
 #include "filters/gaussian/fusion.hpp"
 #include "filters/localization/pose_filter.hpp"
-#include "sim/kernel/time.hpp"
 
 namespace hearsay::localization {
 
@@ -23,37 +19,10 @@ struct Place {
 /// Where a companion is that a robot of this pose and covariance (3×3) saw, to first order.
 Place place_of(const Pose& pose, const Eigen::Matrix3d& covariance, const RelativeSighting& seen);
 
-/// Where a robot drove by its odometry alone, in a frame of its own that drifts: remembered for a
-/// while, so that it can say how far it has come since.
-class DeadReckoning {
- public:
-  /// Keeps what is not older than `memory` > 0, in steps of `step` > 0.
-  DeadReckoning(Duration memory, Duration step);
-
-  /// It drove until `until`, not before the last.
-  void drive(Time until, double forward_m_per_s, double turn_rad_per_s, double dt_s);
-
-  /// How far behind the present position the one at `then` lies, in the present frame (x ahead, y
-  /// to the left), m. Nothing if that is forgotten, or still to come.
-  std::optional<Eigen::Vector2d> behind(Time then) const;
-
- private:
-  struct Sample {
-    Time time;
-    Pose pose;
-  };
-  const Sample& kept(std::size_t i) const { return ring_[(begin_ + i) % ring_.size()]; }
-
-  Duration memory_, step_;
-  std::vector<Sample> ring_;
-  std::size_t begin_ = 0, count_ = 0;
-  Sample now_;
-};
-
 /// What one robot makes of what another said.
 enum class Taken {
   fused,
-  skipped,       ///< the rule could not use it
+  skipped,       ///< the rule could not use it, or gave it no weight
   outside_gate,  ///< less likely than the gate permits
 };
 

@@ -73,6 +73,30 @@ TEST_F(MrclamErrors, MoreOrFewerRobotsThanADataSetCanHaveAreRefused) {
   EXPECT_EQ(message(0), directory_ + ": 0 robots asked for; the data set has 1 … 5");
 }
 
+TEST_F(MrclamErrors, OfOdometryThatIsAskedForTheSameIsNamed) {
+  write("Robot2_Odometry.dat", "12 0 0\n");
+  const auto message_of = [&](const char* content) {
+    write("Robot1_Odometry.dat", content);
+    try {
+      load(directory_, 2, 10_s, Odometry::read);
+    } catch (const InputError& error) {
+      return std::string(error.what()).substr(directory_.size() + 1);
+    }
+    return std::string("no error");
+  };
+  EXPECT_EQ(message_of("12 0.1 0\n"), "no error");
+  EXPECT_EQ(message_of("# t v w\n"), "Robot1_Odometry.dat: no velocities");
+  EXPECT_EQ(message_of("12 0.1\n"),
+            "Robot1_Odometry.dat:1: 2 fields; a line holds 3: time, forward velocity, angular "
+            "velocity");
+  EXPECT_EQ(message_of("12 0.1 fast\n"), "Robot1_Odometry.dat:1: \"fast\" is no number");
+  EXPECT_EQ(message_of("12 0.1 0\n11 0.1 0\n").substr(0, 22), "Robot1_Odometry.dat:2:");
+  EXPECT_EQ(message_of("12 0.1 0"),
+            "Robot1_Odometry.dat:1: the file is cut off: its last line has no line end");
+  remove("Robot1_Odometry.dat");
+  EXPECT_THROW(load(directory_, 2, 10_s, Odometry::read), InputError);
+}
+
 TEST_F(MrclamErrors, ALineWithTooFewOrTooManyFieldsIsNamed) {
   EXPECT_EQ(message_for("Robot1_Measurement.dat", "# head\n12.5 63 2.25 -0.5\n12.6 63 2.25\n"),
             "Robot1_Measurement.dat:3: 3 fields; a line holds 4: time, barcode, range, bearing");

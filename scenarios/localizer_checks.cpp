@@ -18,7 +18,7 @@ void check_localizer(const ScenarioUnderCheck& file, const AgentSpec& agent, con
   if (!file.scenario.world.log) {
     file.fail(path["kind"], "\"localizer\" needs a [world.log] with odometry");
   }
-  if (file.scenario.world.log && file.scenario.world.log->subjects != "landmarks") {
+  if (file.scenario.world.log->subjects != "landmarks") {
     file.fail(log["subjects"],
               "without effect: agents of kind \"localizer\" believe in their own poses alone");
   }

@@ -3,19 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdio>
 #include <string>
 
 #include "tests/scenarios/log_bed.hpp"
 
 namespace hearsay {
 namespace {
-
-std::string line_of(double time_s, int barcode, double range_m, double bearing_rad) {
-  char text[128];
-  std::snprintf(text, sizeof(text), "%.3f %d %.17g %.17g\n", time_s, barcode, range_m, bearing_rad);
-  return text;
-}
 
 class LocalizerRun : public LogBed {
  protected:

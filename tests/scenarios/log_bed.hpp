@@ -1,6 +1,7 @@
 // Scenario files that read a small data set: two robots, two landmarks, in a directory of its own.
 #pragma once
 
+#include <cstdio>
 #include <map>
 #include <memory>
 #include <string>
@@ -43,12 +44,7 @@ class LogBed : public mrclam::SmallDataset {
     try {
       prepared(scenario);
     } catch (const InputError& error) {
-      std::string text = error.what();
-      for (auto at = text.find(directory_ + "/"); at != std::string::npos;
-           at = text.find(directory_ + "/")) {
-        text.erase(at, directory_.size() + 1);
-      }
-      return text;
+      return without_directory(error.what());
     }
     return "no error";
   }
@@ -72,6 +68,13 @@ class LogBed : public mrclam::SmallDataset {
     return values;
   }
 
+  /// A line of a file of measurements.
+  static std::string line_of(double time_s, int barcode, double range_m, double bearing_rad) {
+    char text[128];
+    std::snprintf(text, sizeof(text), "%.3f %d %.17g %.17g\n", time_s, barcode, range_m,
+                  bearing_rad);
+    return text;
+  }
   /// `text` with each `from` replaced.
   static std::string with(std::string text, const std::string& from, const std::string& to) {
     EXPECT_NE(text.find(from), std::string::npos) << from;

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdio>
 #include <string>
 
 #include "tests/scenarios/log_bed.hpp"
@@ -27,12 +26,6 @@ class LogRobots : public LogBed {
     one += line_of(28.0, 63, 1.0, 0.0);  // a landmark
     write("Robot1_Measurement.dat", one);
     write("Robot2_Measurement.dat", two);
-  }
-  static std::string line_of(double time_s, int barcode, double range_m, double bearing_rad) {
-    char text[128];
-    std::snprintf(text, sizeof(text), "%.3f %d %.17g %.17g\n", time_s, barcode, range_m,
-                  bearing_rad);
-    return text;
   }
   std::string scenario() const {
     return "[world]\nstep_s = 0.5\n[world.log]\ndirectory = \"" + directory_ +

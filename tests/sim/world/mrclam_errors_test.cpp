@@ -22,12 +22,7 @@ class MrclamErrors : public SmallDataset {
     try {
       load(directory_, robots, 10_s);
     } catch (const InputError& error) {
-      std::string text = error.what();
-      for (auto at = text.find(directory_ + "/"); at != std::string::npos;
-           at = text.find(directory_ + "/")) {
-        text.erase(at, directory_.size() + 1);
-      }
-      return text;
+      return without_directory(error.what());
     }
     return "no error";
   }
@@ -80,7 +75,7 @@ TEST_F(MrclamErrors, OfOdometryThatIsAskedForTheSameIsNamed) {
     try {
       load(directory_, 2, 10_s, Odometry::read);
     } catch (const InputError& error) {
-      return std::string(error.what()).substr(directory_.size() + 1);
+      return without_directory(error.what());
     }
     return std::string("no error");
   };

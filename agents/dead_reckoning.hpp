@@ -1,4 +1,4 @@
-// The way that a robot came by its odometry alone.
+// How far a robot has come since some instant, by its odometry alone.
 #pragma once
 
 #include <Eigen/Core>

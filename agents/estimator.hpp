@@ -121,6 +121,13 @@ class Estimator {
   /// Comes back from a reboot that lost the memory: it knows nothing and remembers nobody's words.
   virtual void forget() = 0;
 
+  /// What it expects of its next measurement, where that is at hand at no cost: the belief about a
+  /// subject as it is now. Else nullptr.
+  virtual const gaussian::Belief* expectation(int subject) const {
+    static_cast<void>(subject);
+    return nullptr;
+  }
+
   /// What it believes about a subject now; valid until anything else is called.
   virtual const TrackedBelief& tracked(int subject) const = 0;
   virtual const EstimatorCounts& counts() const = 0;

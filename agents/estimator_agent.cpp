@@ -5,6 +5,7 @@
 
 #include "agents/estimators/shared_trajectories.hpp"
 #include "agents/estimators/whole_trajectories.hpp"
+#include "filters/gaussian/distance.hpp"
 
 namespace hearsay {
 namespace {
@@ -55,7 +56,8 @@ EstimatorAgent::EstimatorAgent(Context& context, Witness& witness, Options optio
       options_(std::move(options)),
       estimator_(make_estimator(context, witness, options_)),
       message_kind_(context.simulation().record().name(kind_of(form_of(options_)))),
-      policy_(options_.policy) {
+      policy_(options_.policy),
+      alone_(options_.subjects, options_.dimension, options_.motion) {
   witness_.watch(context.id(), *estimator_);
 }
 
@@ -97,8 +99,12 @@ std::unique_ptr<Estimator> EstimatorAgent::make_estimator(Context& context, Witn
       context.neighbours());
 }
 
+std::int64_t EstimatorAgent::stamp() const {
+  return options_.motion ? options_.motion->stamp_at(context().now()) : 0;
+}
+
 void EstimatorAgent::advance() {
-  if (options_.motion) estimator_->advance(options_.motion->stamp_at(context().now()));
+  if (options_.motion) estimator_->advance(stamp());
 }
 
 void EstimatorAgent::start() {
@@ -118,6 +124,7 @@ void EstimatorAgent::on_up(bool forgets) {
   if (!forgets) return;
   advance();
   estimator_->forget();
+  alone_.forget();
 }
 
 Process EstimatorAgent::look() {
@@ -165,12 +172,34 @@ void EstimatorAgent::aim(Sensor& sensor, int subject) {
 
 void EstimatorAgent::measured(int subject, const gaussian::Belief& information) {
   advance();
+  compare(subject, information);
   const gaussian::Belief whole = gaussian::lifted(information, options_.dimension);
+  alone_.measured(subject, whole, stamp());
   estimator_->measured(subject, whole, witness_.measured(subject, whole));
   measured_since_sent_ = true;
 }
 
+void EstimatorAgent::compare(int subject, const gaussian::Belief& information) {
+  const gaussian::Belief* expectation = estimator_->expectation(subject);
+  if (expectation == nullptr) return;
+  const auto nis = gaussian::nis(*expectation, information);
+  if (!nis) return;
+  nis_sum_ += *nis / information.dimension();
+  ++nis_count_;
+}
+
 void EstimatorAgent::finish() {
+  advance();
+  Record& record = context().simulation().record();
+  record.scalar(context().id(), record.name("nis_mean"),
+                nis_sum_ / static_cast<double>(nis_count_));
+  double alone_m = 0.0, error_m = 0.0;
+  for (int s = 0; s < options_.subjects; ++s) {
+    alone_m += witness_.distance_error_m(s, alone_.at(s, stamp()));
+    error_m += witness_.distance_error_m(s, estimator_->tracked(s).belief);
+  }
+  record.scalar(context().id(), record.name("distance_saved_m"),
+                (alone_m - error_m) / options_.subjects);
   LookSums sums;
   bool any = false;
   for (const Sensor& sensor : options_.sensors) {

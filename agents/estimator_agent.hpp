@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "agents/agent.hpp"
+#include "agents/alone.hpp"
 #include "agents/estimators/static_gaussian.hpp"
 #include "agents/sensors/sensor.hpp"
 #include "agents/talk/periodic.hpp"
@@ -69,6 +70,10 @@ class EstimatorAgent final : public Agent {
   /// From where the agent is, to where the subject is.
   void aim(Sensor& sensor, int subject);
   void measured(int subject, const gaussian::Belief& information);
+  /// How far the measurement is from what is believed, just before it is used.
+  void compare(int subject, const gaussian::Belief& information);
+  /// Of the present; 0 where states stand still.
+  std::int64_t stamp() const;
   /// Brings the estimator to the present.
   void advance();
   Process replay();
@@ -83,6 +88,9 @@ class EstimatorAgent final : public Agent {
   NameId message_kind_;
   TalkPolicy policy_;
   bool measured_since_sent_ = false;
+  Alone alone_;
+  double nis_sum_ = 0.0;  // of NIS / m
+  std::uint64_t nis_count_ = 0;
   std::vector<AgentId> listeners_;  // of the talk that is being held
 };
 

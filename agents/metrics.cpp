@@ -25,6 +25,8 @@ constexpr std::array kMetrics = {
                "eᵀP⁻¹e: error against the ledger's true covariance, χ² with n degrees of freedom"},
     MetricInfo{"kl_to_central_nats", kSeries, kMean, false,
                "D(central ‖ local): divergence from the central filter, nats"},
+    MetricInfo{"hellinger_to_central", kSeries, kMean, false,
+               "√(1 − ∫√(pq)): Hellinger distance from the central filter, 0 if equal, at most 1"},
     MetricInfo{"entropy_nats", kSeries, kMean, false, "differential entropy of the belief, nats"},
     MetricInfo{"multiplicity_mean", kSeries, kMean, true,
                "how often the average measurement in the belief is counted"},
@@ -61,10 +63,24 @@ constexpr std::array kMetrics = {
                "of a tracker: second and further tracks of a target"},
     MetricInfo{"anees", MetricTable::derived, kMean, false,
                "mean of nees over repetitions, divided by n"},
+    MetricInfo{"bytes_per_m_saved", MetricTable::derived, kMean, false,
+               "mean of bytes_sent over mean of distance_saved_m: what a metre less error costs; "
+               "none where nothing is saved"},
     MetricInfo{"distance_error_m", kScalar, kMean, false,
                "distance of estimate and truth at the end, mean over subjects, m"},
+    MetricInfo{"distance_saved_m", kScalar, kMean, false,
+               "by how much nearer to the truth the agent ends than it would from its own "
+               "measurements alone (rule none, same run), m; none if it never saw a subject"},
+    MetricInfo{"nis_mean", kScalar, kMean, false,
+               "vᵀ(MΣMᵀ + S)⁻¹v / m of a measurement against the agent's belief just before, mean "
+               "over its measurements, 1 if consistent; not where that belief was singular, nor of "
+               "trajectories"},
     MetricInfo{"final_claimed_sigma_m", kScalar, kRms, false,
                "claimed standard deviation an axis at the end, rms over subjects, m"},
+    MetricInfo{
+        "position_error_median_m", kScalar, kMean, false,
+        "of moving states: distance of estimate and truth, median over samples and subjects, "
+        "m; who knows nothing yet errs infinitely"},
     MetricInfo{"reach_gap_max", kScalar, kMean, true, "largest reach_gap of all samples"},
     MetricInfo{"not_positive_share", kScalar, kMean, false,
                "share of samples with an indefinite or overflown belief"},

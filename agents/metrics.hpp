@@ -37,6 +37,7 @@ enum class Metric {
   ledger_anees,
   ledger_nees,
   kl_to_central_nats,
+  hellinger_to_central,
   entropy_nats,
   multiplicity_mean,
   multiplicity_max,
@@ -51,6 +52,6 @@ enum class Metric {
   x_error_m,
   y_error_m,
 };
-inline constexpr int series_metric_count = 20;
+inline constexpr int series_metric_count = 21;
 
 }  // namespace hearsay

@@ -4,13 +4,16 @@
 #include <array>
 #include <utility>
 
+#include "agents/trail_message.hpp"
+
 namespace hearsay {
 
 TrackerAgent::TrackerAgent(Context& context, Options options)
     : Agent(context),
       options_(std::move(options)),
       tracker_(options_.tracker, 0),
-      message_kind_(context.simulation().record().name("tracks")) {}
+      tracks_kind_(context.simulation().record().name("tracks")),
+      trails_kind_(context.simulation().record().name("trails")) {}
 
 void TrackerAgent::start() {
   if (options_.sensor) spawn(look());
@@ -55,53 +58,77 @@ Process TrackerAgent::talk() {
 
 void TrackerAgent::say(std::uint64_t tick) {
   tracker_.predict_to(context().now().nanoseconds());
-  message_.stamp = tracker_.stamp();
-  message_.message.beliefs.clear();
-  for (const tracking::Report& report : tracker_.reports()) {
-    message_.message.beliefs.push_back({report.label, report.belief});
-  }
-  if (message_.message.beliefs.empty()) return;
-  message_.message.incarnation = incarnation_;
-  message_.message.count = next_count_++;
-  gaussian::encode(message_, bytes_);
+  const std::vector<tracking::Report> reports = tracker_.reports();
+  if (reports.empty()) return;
+  const bool trails = options_.tracker.trail > 0;
+  trails ? tell_with_trails(reports) : tell(reports);
   Outgoing packet;
-  packet.kind = message_kind_;
+  packet.kind = trails ? trails_kind_ : tracks_kind_;
   packet.bytes = bytes_;
   packet.tick = tick;
   packet.subject = static_cast<std::uint64_t>(context().id());
   context().send(packet);
 }
 
+void TrackerAgent::tell(std::span<const tracking::Report> reports) {
+  message_.stamp = tracker_.stamp();
+  message_.message.beliefs.clear();
+  for (const tracking::Report& report : reports) {
+    message_.message.beliefs.push_back({report.label, report.belief});
+  }
+  message_.message.incarnation = incarnation_;
+  message_.message.count = next_count_++;
+  gaussian::encode(message_, bytes_);
+}
+
+void TrackerAgent::tell_with_trails(std::span<const tracking::Report> reports) {
+  put_tracks(reports, tracker_.stamp(), trails_);
+  trails_.incarnation = incarnation_;
+  trails_.count = next_count_++;
+  gaussian::encode(trails_, bytes_);
+}
+
 void TrackerAgent::on_packet(const Packet& packet) {
-  if (packet.kind != message_kind_) return;
-  gaussian::StampedMessage& message = message_;
-  if (!gaussian::decode(packet.bytes, message) || outdated(packet.sender, message.message)) {
+  if (packet.kind != tracks_kind_ && packet.kind != trails_kind_) return;
+  const auto news = told(packet);
+  if (!news || outdated(packet.sender, *news)) {
     ++refused_;
     return;
   }
-  reports_.clear();
-  for (const gaussian::BeliefEntry& entry : message.message.beliefs) {
-    reports_.push_back({entry.subject, entry.belief});
-  }
   tracker_.predict_to(context().now().nanoseconds());
   const bool used =
-      tracker_.heard(static_cast<std::uint32_t>(packet.sender), message.stamp, reports_);
+      tracker_.heard(static_cast<std::uint32_t>(packet.sender), news->stamp, reports_);
   refused_ += used ? 0 : 1;
 }
 
-bool TrackerAgent::outdated(AgentId from, const gaussian::Message& message) {
+std::optional<TrackerAgent::Told> TrackerAgent::told(const Packet& packet) {
+  if (packet.kind == trails_kind_) {
+    if (!gaussian::decode(packet.bytes, trails_)) return std::nullopt;
+    const auto stamp = take_tracks(trails_, reports_);
+    if (!stamp) return std::nullopt;
+    return Told{trails_.incarnation, trails_.count, *stamp};
+  }
+  if (!gaussian::decode(packet.bytes, message_)) return std::nullopt;
+  reports_.clear();
+  for (const gaussian::BeliefEntry& entry : message_.message.beliefs) {
+    reports_.push_back({entry.subject, entry.belief, std::nullopt});
+  }
+  return Told{message_.message.incarnation, message_.message.count, message_.stamp};
+}
+
+bool TrackerAgent::outdated(AgentId from, const Told& told) {
   const auto known = std::find_if(heard_.begin(), heard_.end(),
                                   [&](const Heard& heard) { return heard.from == from; });
   if (known == heard_.end()) {
-    heard_.push_back({from, message.incarnation, message.count});
+    heard_.push_back({from, told.incarnation, told.count});
     return false;
   }
-  const auto order = std::pair(message.incarnation, message.count);
+  const auto order = std::pair(told.incarnation, told.count);
   if (order <= std::pair(known->incarnation, known->count)) return true;
-  if (message.incarnation != known->incarnation) {
+  if (told.incarnation != known->incarnation) {
     tracker_.forget(static_cast<std::uint32_t>(from));
   }
-  *known = {from, message.incarnation, message.count};
+  *known = {from, told.incarnation, told.count};
   return false;
 }
 

@@ -2,7 +2,8 @@
 // they tell. It does not know how many targets there are, nor whose plot is whose.
 //
 // A message is a StampedGaussianMessage (filters/gaussian/codec.hpp) with the sender's clock in ns
-// as its stamp and the labels of its tracks in place of subjects.
+// as its stamp and the labels of its tracks in place of subjects; with trails it is that of
+// trail_message.hpp. Both kinds are understood by all.
 #pragma once
 
 #include <optional>
@@ -14,6 +15,7 @@
 #include "agents/talk/periodic.hpp"
 #include "agents/target_truth.hpp"
 #include "filters/gaussian/codec.hpp"
+#include "filters/gaussian/trajectory_codec.hpp"
 #include "filters/tracking/tracker.hpp"
 
 namespace hearsay {
@@ -45,11 +47,19 @@ class TrackerAgent final : public Agent {
   void scan(std::uint64_t count);
   Process talk();
   void say(std::uint64_t tick);
-  bool outdated(AgentId from, const gaussian::Message& message);
+  void tell(std::span<const tracking::Report> reports);
+  void tell_with_trails(std::span<const tracking::Report> reports);
+  /// What a message says; its tracks are in reports_.
+  struct Told {
+    std::uint32_t incarnation, count;
+    gaussian::Stamp stamp;
+  };
+  std::optional<Told> told(const Packet& packet);
+  bool outdated(AgentId from, const Told& told);
 
   Options options_;
   tracking::Tracker tracker_;
-  NameId message_kind_;
+  NameId tracks_kind_, trails_kind_;
   struct Heard {
     AgentId from;
     std::uint32_t incarnation, count;
@@ -60,6 +70,7 @@ class TrackerAgent final : public Agent {
   std::uint64_t refused_ = 0;
   tracking::Tracker::Counts before_;  // of the trackers it has forgotten
   gaussian::StampedMessage message_;
+  gaussian::TrajectoryMessage trails_;
   std::vector<std::byte> bytes_;
   std::vector<tracking::Report> reports_;
 };

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "filters/gaussian/distance.hpp"
 #include "sim/kernel/error.hpp"
 
 namespace hearsay {
@@ -14,6 +15,14 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 double& at(std::array<double, series_metric_count>& values, Metric metric) {
   return values[static_cast<std::size_t>(metric)];
+}
+
+/// Its order is lost. Nothing of nothing.
+double median(std::vector<double>& values) {
+  if (values.empty()) return kNone;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
 bool is_ledger(Metric metric) { return metrics()[static_cast<std::size_t>(metric)].ledger; }
@@ -142,6 +151,7 @@ void Witness::sample() {
           spreads_[static_cast<std::size_t>(s)].width().value_or(kNone);
     }
     keep(central_agent, s, values);
+    keep_distance(central_distances_m_, values);
   }
   for (Watched& watched : watched_) {
     watched.estimator->advance(stamp_);
@@ -167,6 +177,14 @@ void Witness::sample(Watched& watched, int subject) {
                                options_.subjects[static_cast<std::size_t>(subject)].name);
   }
   keep(watched.agent, subject, values);
+  keep_distance(watched.distances_m, values);
+}
+
+void Witness::keep_distance(std::vector<double>& distances_m, const Values& values) const {
+  if (!options_.motion) return;
+  const double error_m = values[static_cast<std::size_t>(Metric::rms_error_m)];
+  distances_m.push_back(std::isnan(error_m) ? std::numeric_limits<double>::infinity()
+                                            : error_m * std::sqrt(double(axes_)));
 }
 
 void Witness::keep(AgentId agent, int subject, const Values& values) {
@@ -208,6 +226,11 @@ Witness::Values Witness::measure(const TrackedBelief& tracked,
     const gaussian::Belief& reference = central_[static_cast<std::size_t>(subject)].belief;
     at(values, Metric::kl_to_central_nats) =
         gaussian::kl_divergence_nats(reference, belief).value_or(kNone);
+  }
+  if (wants(Metric::hellinger_to_central)) {
+    const gaussian::Belief& reference = central_[static_cast<std::size_t>(subject)].belief;
+    at(values, Metric::hellinger_to_central) =
+        gaussian::hellinger(reference, belief).value_or(kNone);
   }
   const gaussian::Definiteness kind = assessment.definiteness;
   at(values, Metric::not_positive) =
@@ -269,6 +292,15 @@ gaussian::Vector Witness::truth(int subject) const {
   return x;
 }
 
+double Witness::distance_m(const std::optional<gaussian::Vector>& state, int subject) const {
+  return state ? (*state - truth(subject)).head(axes_).norm() : kNone;
+}
+
+double Witness::distance_error_m(int subject, const gaussian::Belief& belief) {
+  advance();
+  return distance_m(gaussian::state(belief), subject);
+}
+
 void Witness::finish() {
   if (last_sample_ != simulation_.now()) sample();
   Record& record = simulation_.record();
@@ -279,11 +311,13 @@ void Witness::finish() {
     if (now >= agreement_->options().from && agreement_->last_sample() != now) sample_agreement();
     record.scalar(central_agent, record.name("agree_again_s"), agreement_->agree_again_s());
   }
-  finish({.agent = central_agent, .estimator = nullptr});
-  for (const Watched& watched : watched_) finish(watched);
+  Watched central{.agent = central_agent, .estimator = nullptr};
+  central.distances_m.swap(central_distances_m_);
+  finish(central);
+  for (Watched& watched : watched_) finish(watched);
 }
 
-void Witness::finish(const Watched& watched) {
+void Witness::finish(Watched& watched) {
   Record& record = simulation_.record();
   const auto scalar = [&](const char* name, double value, Origin origin = Origin::run) {
     record.scalar(watched.agent, record.name(name), value, origin);
@@ -295,12 +329,13 @@ void Witness::finish(const Watched& watched) {
         watched.estimator ? watched.estimator->tracked(subject).belief : central_[s].belief;
     const gaussian::Assessment assessment = gaussian::assess(belief);
     const double sigma = claimed_sigma(belief, assessment);
-    distance += assessment.state ? (*assessment.state - truth(subject)).head(axes_).norm() : kNone;
+    distance += distance_m(assessment.state, subject);
     variance += sigma * sigma;
   }
   const auto subjects = static_cast<double>(central_.size());
   scalar("distance_error_m", distance / subjects);
   scalar("final_claimed_sigma_m", std::sqrt(variance / subjects));
+  if (options_.motion) scalar("position_error_median_m", median(watched.distances_m));
   if (!watched.estimator) return;
   scalar("not_positive_share",
          static_cast<double>(watched.not_positive) / static_cast<double>(watched.samples));

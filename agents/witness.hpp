@@ -47,6 +47,9 @@ class Witness {
   /// An agent made a measurement now. @return its index in the subject's book.
   std::size_t measured(int subject, const gaussian::Belief& information);
 
+  /// Distance from the mean of a belief about a subject to the truth now, m; NaN without a mean.
+  double distance_error_m(int subject, const gaussian::Belief& belief);
+
   /// From now on `agent`'s beliefs are sampled. Agents in ascending number.
   void watch(AgentId agent, Estimator& estimator);
 
@@ -65,6 +68,7 @@ class Witness {
     AgentId agent;
     Estimator* estimator;
     double reach_gap_max = 0.0;
+    std::vector<double> distances_m = {};  // of moving subjects: errors at all samples
     std::uint64_t samples = 0;
     std::uint64_t not_positive = 0;
     bool overflow_told = false;
@@ -94,9 +98,11 @@ class Witness {
   void measure_ledger(const TrackedBelief& tracked, const gaussian::Assessment& assessment,
                       int subject, Values& values) const;
   void keep(AgentId agent, int subject, const Values& values);
-  void finish(const Watched& watched);
+  void keep_distance(std::vector<double>& distances_m, const Values& values) const;
+  void finish(Watched& watched);
   bool wants(Metric metric) const { return wanted_[static_cast<std::size_t>(metric)]; }
   gaussian::Vector truth(int subject) const;
+  double distance_m(const std::optional<gaussian::Vector>& state, int subject) const;
 
   Simulation& simulation_;
   Options options_;
@@ -110,6 +116,7 @@ class Witness {
   EstimatorWorkspace workspace_;
   std::vector<MeasurementBook> books_;  // by subject
   std::vector<TrackedBelief> central_;  // by subject
+  std::vector<double> central_distances_m_;
   std::vector<Watched> watched_;
   std::vector<Spread> spreads_;  // by subject; at the instant of a sample
   std::optional<Agreement> agreement_;

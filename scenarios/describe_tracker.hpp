@@ -49,6 +49,9 @@ void describe(V& v, TrackerSpec& s) {
   v.field("apart_max", s.apart_max, between(1, 1e6),
           "a track of another agent is no longer this one after so many messages in a row outside "
           "the gate");
+  v.field("trail_s", s.trail_s, time_span(false),
+          "tracks are told of with the trajectory of their plots in so many seconds, and those of "
+          "others compared by it, too; default: by their states alone");
 }
 
 template <class V>

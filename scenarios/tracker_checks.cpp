@@ -86,6 +86,10 @@ void TrackerChecker::check_tracker(const AgentSpec& agent, const KeyPath& path) 
     file_.fail(tracker["confirm_hits"], "must not be more than confirm_scans (" +
                                             std::to_string(agent.tracker.confirm_scans) + ")");
   }
+  if (agent.tracker.trail_s && !agent.tracker.acceleration_psd_m2_per_s3) {
+    file_.fail(tracker["trail_s"],
+               "needs acceleration_psd_m2_per_s3: trails are of targets that move");
+  }
   check_motion(agent, path);
 }
 

@@ -18,6 +18,7 @@ struct TrackerSpec {
   double sigma_max_m = 100.0;                        ///< > 0
   int tracks_max = 1000;                             ///< 1 … 1e5
   int apart_max = 3;                                 ///< 1 … 1e6
+  std::optional<double> trail_s;  ///< none: tracks have no trails; > 0; targets that move
   bool operator==(const TrackerSpec&) const = default;
 };
 

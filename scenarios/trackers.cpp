@@ -68,6 +68,7 @@ TrackerAgent::Options tracker_options(const AgentSpec& spec,
       .tracks_max = tracker.tracks_max,
       .rule = gaussian::rule_by_name(tracker.fusion).value(),
       .apart_max = tracker.apart_max,
+      .trail = tracker.trail_s ? Duration::seconds(*tracker.trail_s).nanoseconds() : 0,
   };
   options.targets = targets;
   const SensorSpec& sensor = spec.sensor;

@@ -76,6 +76,9 @@ class StaticGaussianEstimator final : public Estimator {
   const TrackedBelief& tracked(int subject) const override {
     return own_[static_cast<std::size_t>(subject)];
   }
+  const gaussian::Belief* expectation(int subject) const override {
+    return &own_[static_cast<std::size_t>(subject)].belief;
+  }
   using Counts = EstimatorCounts;
   const Counts& counts() const override { return counts_; }
 

@@ -47,7 +47,7 @@ class BatchIntersection {
 };
 
 /// The Metropolis weight of a neighbour in consensus, 1/(1 + the greater of the two numbers of
-/// neighbours). Xiao & Boyd 2004. Both ≥ 0.
+/// neighbours). L. Xiao, S. Boyd, S. Lall, IPSN 2005. Both ≥ 0.
 double metropolis_weight(int degree_a, int degree_b);
 
 }  // namespace hearsay::gaussian

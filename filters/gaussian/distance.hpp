@@ -22,6 +22,11 @@ std::optional<Expected> expected(const Belief& belief, const Matrix& M);
 std::optional<double> nis(const Expected& expected, const Matrix& S, const Vector& z);
 std::optional<double> nis(const Belief& belief, const Matrix& M, const Matrix& S, const Vector& z);
 
+/// The same of a measurement of the first m of the n numbers, as information about them: M = (I 0),
+/// S = Ω⁻¹ and z = Ω⁻¹ξ of `information` (m×m). Nothing unless both are positive definite.
+/// @throws BrokenInvariant if m > n.
+std::optional<double> nis(const Belief& belief, const Belief& information);
+
 /// d² = (μ_a − μ_b)ᵀ(Σ_a + Σ_b)⁻¹(μ_a − μ_b), Merino 2007, eq. 3.65: χ² with n degrees of freedom
 /// if both mean the same x and their errors are independent. Nothing unless both are positive
 /// definite.

@@ -86,9 +86,8 @@ constexpr std::array<RuleInfo, 18> table = {{
      "all beliefs are conservative; nothing about what they share",
      "always, for any correlation; the newest belief of each neighbour, in any order", exact_ledger,
      "for k beliefs about 20 steps of k³/3 + k²n² + kn³ operations, once a talk",
-     "S. Julier, J. K. Uhlmann, in: Handbook of Multisensor Data Fusion, 2001, ch. 12 (any number "
-     "of "
-     "beliefs)",
+     "S. J. Julier, J. K. Uhlmann, in: Handbook of Multisensor Data Fusion, 2001, ch. 12 (any "
+     "number of beliefs)",
      Fuses::at_once},
     {Rule::split_ci, "split-ci", Sends::belief_and_fresh, Memory::nothing,
      "what an agent measured since it last sent is independent of all that others know",
@@ -101,16 +100,18 @@ constexpr std::array<RuleInfo, 18> table = {{
      "all beliefs are conservative; nothing about what they share; the graph is undirected",
      "always, for any correlation: weights of Metropolis, and one's own for whom was not heard",
      exact_ledger, "for k beliefs k additions, ~kn² operations, once a talk",
-     "G. Battistelli, L. Chisci, Automatica 50(3), 2014; weights: Xiao & Boyd 2004",
+     "G. Battistelli, L. Chisci, Automatica 50(3), 2014; weights: L. Xiao, S. Boyd, S. Lall, IPSN "
+     "2005",
      Fuses::at_once},
     {Rule::hybrid_consensus, "hybrid-consensus", Sends::hybrid, Memory::held,
-     "as consensus-information; fresh measurements are spread evenly over estimator.correction "
+     "as consensus-information, and that what an agent measured since it last sent is independent "
+     "of all that others know; with correction \"nodes\" also that it spreads evenly over all "
      "agents",
-     "with correction \"one\" always; with \"nodes\" a fresh measurement may count more than once",
+     "with correction \"one\" where that is so; with \"nodes\" not while news spreads: a fresh "
+     "measurement counts more than once",
      exact_ledger, "for k beliefs 2k additions, ~2kn² operations, once a talk",
      "G. Battistelli, L. Chisci, G. Mugnai, A. Farina, A. Graziano, IEEE Trans. AC 60(5), 2015, "
-     "with "
-     "one step of consensus a talk",
+     "with one step of consensus a talk",
      Fuses::at_once},
 }};
 

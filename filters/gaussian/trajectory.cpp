@@ -139,8 +139,12 @@ void Trajectory::intersect(double omega, const Trajectory& other) {
 }
 
 Belief present(const Trajectory& trajectory) {
-  Trajectory left = trajectory;
-  while (left.steps() > 1) {
+  const auto said = [&](int k) { return Belief{trajectory.omega(k), trajectory.xi(k)}; };
+  const std::span<const Stamp> stamps = trajectory.stamps();
+  Trajectory left(trajectory.dimension(), stamps[0]);
+  left.update(0, said(0));
+  for (int k = 1; k < trajectory.steps(); ++k) {
+    left.append(stamps[static_cast<std::size_t>(k)], trajectory.omega_next(k - 1), said(k));
     if (!left.marginalise(0)) return Belief::unknown(trajectory.dimension());
   }
   const Scaled before = scale(trajectory.omega(trajectory.steps() - 1));

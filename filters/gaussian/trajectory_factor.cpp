@@ -123,11 +123,16 @@ double TrajectoryFactor::trace_with(const Trajectory& other) {
 }
 
 std::optional<double> nees(const Trajectory& trajectory, std::span<const Vector> truth) {
+  TrajectoryFactor factor;
+  return nees(trajectory, truth, factor);
+}
+
+std::optional<double> nees(const Trajectory& trajectory, std::span<const Vector> truth,
+                           TrajectoryFactor& room) {
   require(truth.size() == static_cast<std::size_t>(trajectory.steps()),
           "nees: a true state for each step");
-  TrajectoryFactor factor;
-  if (factor.factor(trajectory) != Definiteness::positive) return std::nullopt;
-  const std::vector<Vector>& means = factor.means();
+  if (room.factor(trajectory) != Definiteness::positive) return std::nullopt;
+  const std::vector<Vector>& means = room.means();
   double sum = 0.0;
   Vector later;
   for (int k = trajectory.steps() - 1; k >= 0; --k) {

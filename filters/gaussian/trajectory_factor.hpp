@@ -56,6 +56,9 @@ std::optional<double> kl_divergence_nats(const Trajectory& p, const Trajectory& 
 /// (x − μ)ᵀΩ(x − μ) of states `truth` (n each, one a step): its mean is n·steps for a consistent
 /// belief. Nothing unless Ω is positive definite.
 std::optional<double> nees(const Trajectory& trajectory, std::span<const Vector> truth);
+/// The same, with room to work in; `truth` is not what lies in there.
+std::optional<double> nees(const Trajectory& trajectory, std::span<const Vector> truth,
+                           TrajectoryFactor& room);
 
 /// ω in [0, 1] that maximises |ωΩ_a + (1−ω)Ω_b| over the whole block matrix: covariance
 /// intersection by determinant (Merino 2007, eq. 3.45–3.46 on trajectories). ½ if the determinant

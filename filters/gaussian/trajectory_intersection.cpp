@@ -1,103 +1,96 @@
-// Covariance intersection of trajectories: the zero of the slope of
-//     f(ω) = log |Ω_b + ω(Ω_a − Ω_b)|,
-// which is concave. With the block Cholesky factorisation at ω, dP_k and d²P_k the derivatives of
-// its P_k, X = L⁻¹dPL⁻ᵀ, Y = L⁻¹d²PL⁻ᵀ, V = L⁻¹d(Ω_k,k+1) and Z = V − XW:
-//     dP_k+1  = d(Ω_k+1,k+1) − VᵀW − WᵀZ,      f'  = Σ tr X,
-//     d²P_k+1 = WᵀYW − 2ZᵀZ,                   f'' = Σ (tr Y − ‖X‖²).
+// Covariance intersection of trajectories: the zero of the slope of f(ω) = log |ωΩ_a + (1−ω)Ω_b|,
+// which is concave, by Newton's method within a bracket. A step costs one sweep over both
+// trajectories (trajectory_slope.hpp); how many are needed depends on where the zero lies, not on
+// how long they are.
+//
+// With the eigenvalues μ of Ω⁻¹(Ω_a − Ω_b), f'' is −Σμ² and the m-th derivative (m−1)!·Σ±μᵐ, hence
+// at most (m−1)!·sᵐ with s = √−f'' (self-concordance). In units of 1/s let λ and λ' be the
+// distances of the last two points from the zero. To first order in them, the error is then at most
+//     λ²         after a step of Newton,
+//     11 λ²λ'²   at the zero of the cubic ω(f') through both points and their slopes: its remainder
+//                is ω''''·(f'₁f'₂)²/4!, with |ω''''| ≤ (15·2³ + 10·2·6 + 24)/s⁵ and f' = sλ.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
-#include "filters/gaussian/block_cholesky.hpp"
-#include "filters/gaussian/symmetric.hpp"
 #include "filters/gaussian/trajectory_factor.hpp"
+#include "filters/gaussian/trajectory_slope.hpp"
 #include "sim/kernel/error.hpp"
 
 namespace hearsay::gaussian {
 namespace {
 
-struct Slope {
-  double first;
-  double second;
+// Of ω, and in units of 1/s: so ½·1e-20 nats of the maximum are lost, far less than the rounding of
+// f itself.
+constexpr double error_max = 1e-10;
+
+struct Point {
+  double omega;
+  TrajectorySlope slope;
 };
 
-/// aᵀb.
-Matrix product(const Matrix& a, const Matrix& b) { return a.transpose().lazyProduct(b); }
+/// Where the cubic ω(f') through two points, with its slopes 1/f'' there, is zero.
+double cubic_zero(const Point& before, const Point& now) {
+  const double g = now.slope.first, g_before = before.slope.first;
+  const double span = g_before - g;
+  const double chord = (before.omega - now.omega) / span;
+  const double bend = (chord - 1.0 / now.slope.second) / span;
+  const double bend_before = (1.0 / before.slope.second - chord) / span;
+  const double twist = (bend_before - bend) / span;
+  return now.omega - g / now.slope.second + g * g * (bend - twist * g_before);
+}
 
-/// x ← L⁻¹x column by column, with the reciprocals of L's diagonal.
-void whiten(const Matrix& l, const Vector& reciprocal, Matrix& x) {
-  const Eigen::Index n = x.rows();
-  for (Eigen::Index c = 0; c < x.cols(); ++c) {
-    double* const v = x.data() + c * n;
-    for (Eigen::Index k = 0; k < n; ++k) {
-      v[k] *= reciprocal(k);
-      const double* const below = l.data() + k * n;
-      for (Eigen::Index i = k + 1; i < n; ++i) v[i] -= below[i] * v[k];
+struct Step {
+  double omega;
+  bool last;  ///< its error is below error_max
+};
+
+/// From the last point and the one before it, if any, towards the zero.
+Step step_from(const Point& now, const std::optional<Point>& before) {
+  const double s = std::sqrt(-now.slope.second);
+  const double lambda = std::fabs(now.slope.first) / s;
+  double omega = now.omega - now.slope.first / now.slope.second;
+  double error = lambda * lambda;
+  if (before) {
+    const double lambda_before = s * std::fabs(omega - before->omega);
+    const double gain = 11.0 * lambda_before * lambda_before;
+    if (gain < 1.0 && before->slope.first != now.slope.first) {
+      omega = cubic_zero(*before, now);
+      error *= gain;
     }
   }
+  return {omega, lambda <= 0.1 && error <= error_max * std::min(1.0, s)};
 }
 
-/// a ← L⁻¹aL⁻ᵀ of a symmetric a.
-void whiten_both(const Matrix& l, const Vector& reciprocal, Matrix& a) {
-  whiten(l, reciprocal, a);
-  a.transposeInPlace();
-  whiten(l, reciprocal, a);
-}
-
-/// ωa + (1−ω)b and a − b.
-void mix(const Trajectory::ConstBlock& a, const Trajectory::ConstBlock& b, double omega,
-         Matrix& mixed, Matrix& change) {
-  mixed = omega * a + (1.0 - omega) * b;
-  change = a - b;
-}
-
-/// At Ω = ωΩ_a + (1−ω)Ω_b; nothing unless it is positive definite.
-std::optional<Slope> slope(const Trajectory& a, const Trajectory& b, double omega) {
-  Slope sum{0.0, 0.0};
-  Vector scales, next_scales, reciprocal;
-  Matrix P, dP, W, V, YW;
-  Matrix less_P, less_dP, ddP;  // what the steps before take off, and leave
-  for (int k = 0; k < a.steps(); ++k) {
-    mix(a.omega(k), b.omega(k), omega, P, dP);
-    if (k == 0) {
-      diagonal_factors(P, scales);
-    } else {
-      scales = next_scales;
+template <int N>
+std::optional<double> best_weight(const Trajectory& a, const Trajectory& b) {
+  SlopeSweep<N> sweep(a, b);
+  // Where the slope at an end still points outwards, the end is best.
+  const auto best_at = [&](double end) {
+    const auto slope = sweep.at(end);
+    return slope && (end > 0.5 ? slope->first >= 0.0 : slope->first <= 0.0);
+  };
+  double omega = 0.5, low = 0.0, high = 1.0;
+  bool asked[2] = {false, false};  // about either end
+  std::optional<Point> before;
+  for (int iteration = 0; iteration < 100 && high - low > 1e-15; ++iteration) {
+    const auto slope = sweep.at(omega);
+    if (!slope) return std::nullopt;
+    if (!(slope->second < -1e-20) || slope->first == 0.0) return omega;  // the two are equal
+    (slope->first > 0.0 ? low : high) = omega;
+    const Point now{omega, *slope};
+    Step step = step_from(now, before);
+    if (step.last && step.omega >= low && step.omega <= high) return step.omega;
+    if (!(step.omega > low && step.omega < high)) {
+      const int end = slope->first > 0.0 ? 1 : 0;
+      if (!std::exchange(asked[end], true) && best_at(end)) return end;
+      step.omega = 0.5 * (low + high);
     }
-    scale_both(P, scales, scales);
-    scale_both(dP, scales, scales);
-    if (k > 0) {
-      P -= less_P;
-      dP -= less_dP;
-    }
-    if (cholesky(P) != Definiteness::positive) return std::nullopt;
-    const Matrix& L = P;
-    reciprocal = L.diagonal().cwiseInverse();
-    Matrix& X = dP;
-    whiten_both(L, reciprocal, X);
-    sum.first += X.trace();
-    sum.second -= X.cwiseProduct(X).sum();
-    Matrix& Y = ddP;
-    if (k > 0) {
-      whiten_both(L, reciprocal, Y);
-      sum.second += Y.trace();
-    }
-    if (k + 1 == a.steps()) break;
-    const Matrix next = omega * a.omega(k + 1) + (1.0 - omega) * b.omega(k + 1);
-    diagonal_factors(next, next_scales);
-    mix(a.omega_next(k), b.omega_next(k), omega, W, V);
-    for (Matrix* w : {&W, &V}) {
-      scale_both(*w, scales, next_scales);
-      whiten(L, reciprocal, *w);
-    }
-    const Matrix Z = V - X.lazyProduct(W);
-    less_P = gram(W);
-    less_dP = product(V, W) + product(W, Z);
-    if (k > 0) YW = Y.lazyProduct(W);
-    ddP = -2.0 * gram(Z);
-    if (k > 0) ddP += product(W, YW);
+    before = now;
+    omega = step.omega;
   }
-  return sum;
+  return omega;
 }
 
 }  // namespace
@@ -105,30 +98,16 @@ std::optional<Slope> slope(const Trajectory& a, const Trajectory& b, double omeg
 std::optional<double> intersect_det(const Trajectory& a, const Trajectory& b) {
   require(a.dimension() == b.dimension() && std::ranges::equal(a.stamps(), b.stamps()),
           "intersect_det: trajectories must have the same stamps and dimension");
-  // Where the slope at an end still points outwards, the end is best.
-  const auto best_at = [&](double end) {
-    const auto at_end = slope(a, b, end);
-    return at_end && (end > 0.5 ? at_end->first >= 0.0 : at_end->first <= 0.0);
-  };
-  double omega = 0.5, low = 0.0, high = 1.0;
-  bool asked[2] = {false, false};  // about either end
-  for (int iteration = 0; iteration < 100; ++iteration) {
-    const auto at = slope(a, b, omega);
-    if (!at) return std::nullopt;
-    if (!(at->second < -1e-20)) return omega;  // the two are equal
-    (at->first > 0.0 ? low : high) = omega;
-    double next = omega - at->first / at->second;
-    if (!(next > low && next < high)) {
-      const int end = at->first > 0.0 ? 1 : 0;
-      if (!std::exchange(asked[end], true) && best_at(end)) return end;
-      next = 0.5 * (low + high);
-    }
-    const double step = next - omega;
-    omega = next;
-    // The error after a step of Newton is about step²·√|f''|.
-    if (step * step * std::sqrt(-at->second) <= 1e-12 || high - low <= 1e-15) break;
+  switch (a.dimension()) {  // those of one, two and three axes at a known size
+    case 2:
+      return best_weight<2>(a, b);
+    case 4:
+      return best_weight<4>(a, b);
+    case 6:
+      return best_weight<6>(a, b);
+    default:
+      return best_weight<0>(a, b);
   }
-  return omega;
 }
 
 }  // namespace hearsay::gaussian

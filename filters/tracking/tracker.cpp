@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "filters/tracking/trail.hpp"
 #include "sim/kernel/error.hpp"
 
 namespace hearsay::tracking {
@@ -26,6 +27,7 @@ void require_options(const Tracker::Options& o) {
           "Tracker: confirm_hits must be 1 to confirm_scans");
   require(o.misses_max >= 1 && o.tracks_max >= 1 && o.sigma_max > 0.0,
           "Tracker: bounds must be positive");
+  require(o.trail == 0 || (o.trail > 0 && o.q > 0.0), "Tracker: trails are of objects that move");
   const gaussian::RuleInfo& rule = gaussian::info(o.rule);
   require(rule.memory == gaussian::Memory::nothing &&
               (rule.sends == gaussian::Sends::belief || rule.sends == gaussian::Sends::nothing),
@@ -42,11 +44,16 @@ double position_sigma(const gaussian::Expected& position) {
   return std::sqrt(position.covariance.trace() / static_cast<double>(position.z.size()));
 }
 
+/// For q > 0 and by > 0.
+gaussian::Transition motion(const Tracker::Options& o, gaussian::Stamp by) {
+  const double dt_s = static_cast<double>(by) * o.seconds_per_stamp;
+  return gaussian::white_noise_acceleration(o.axes, dt_s, o.q);
+}
+
 /// A copy of `belief`, moved on.
 Belief moved(const Belief& belief, const Tracker::Options& o, gaussian::Stamp by) {
   if (o.q == 0.0 || by <= 0) return belief;
-  const double dt_s = static_cast<double>(by) * o.seconds_per_stamp;
-  return gaussian::predict(belief, gaussian::white_noise_acceleration(o.axes, dt_s, o.q));
+  return gaussian::predict(belief, motion(o, by));
 }
 
 }  // namespace
@@ -112,6 +119,7 @@ void Tracker::match(std::span<const gaussian::PositionMeasurement> plots, const 
     if (hit) {
       const auto j = static_cast<std::size_t>(plot_of[i]);
       candidates[i]->belief += gaussian::measurement_information(M_, plots[j].S, plots[j].z);
+      leave_trail(*candidates[i], plots[j]);
       used[j] = 1;
     }
     note(*candidates[i], hit, positions[i] && covers(coverage, positions[i]->z));
@@ -168,11 +176,31 @@ Track* Tracker::begin() {
 void Tracker::begin_at(const gaussian::PositionMeasurement& plot) {
   Track* track = begin();
   if (track == nullptr) return;
-  track->belief = gaussian::measurement_information(M_, plot.S, plot.z);
-  const double variance = options_.birth_speed_sigma * options_.birth_speed_sigma;
-  for (int i = options_.axes; i < n_; ++i) track->belief.omega(i, i) += 1.0 / variance;
+  track->belief = born_of(plot);
+  leave_trail(*track, plot);
   ++counts_.born;
   note(*track, true, true);
+}
+
+Belief Tracker::born_of(const gaussian::PositionMeasurement& plot) const {
+  Belief belief = gaussian::measurement_information(M_, plot.S, plot.z);
+  const double variance = options_.birth_speed_sigma * options_.birth_speed_sigma;
+  for (int i = options_.axes; i < n_; ++i) belief.omega(i, i) += 1.0 / variance;
+  return belief;
+}
+
+void Tracker::leave_trail(Track& track, const gaussian::PositionMeasurement& plot) const {
+  if (options_.trail == 0) return;
+  if (!track.trail) {
+    track.trail.emplace(n_, stamp_);
+    track.trail->update(0, born_of(plot));
+    return;
+  }
+  const gaussian::Stamp since = stamp_ - track.trail->stamps().back();
+  std::optional<gaussian::Transition> there;
+  if (since > 0) there = motion(options_, since);
+  extend(*track.trail, stamp_, gaussian::measurement_information(M_, plot.S, plot.z), there,
+         stamp_ - options_.trail);
 }
 
 bool Tracker::usable(const Belief& belief) const {
@@ -191,7 +219,7 @@ bool Tracker::heard(std::uint32_t from, gaussian::Stamp stamp, std::span<const R
     return false;
   }
   std::vector<Label> theirs, mine;
-  std::vector<std::optional<Belief>> beliefs;
+  std::vector<Arrival> arrivals;
   std::set<Label> known;
   for (const Report& report : reports) {
     if (!known.insert(report.label).second) {
@@ -199,13 +227,14 @@ bool Tracker::heard(std::uint32_t from, gaussian::Stamp stamp, std::span<const R
       continue;
     }
     theirs.push_back(report.label);
-    beliefs.push_back(arrived(report.belief, stamp));
-    if (!beliefs.back()) ++counts_.refused;
+    const bool fits = report.trail && report.trail->dimension() == n_;
+    arrivals.push_back({arrived(report.belief, stamp), fits ? &*report.trail : nullptr});
+    if (!arrivals.back().belief) ++counts_.refused;
   }
   for (const Track& track : tracks_) mine.push_back(track.label);
-  const auto decisions = table_.judge(from, theirs, mine, separations(beliefs));
+  const auto decisions = table_.judge(from, theirs, mine, separations(arrivals));
   for (std::size_t i = 0; i < decisions.size(); ++i) {
-    follow(decisions[i], beliefs[i], from, theirs[i]);
+    follow(decisions[i], arrivals[i].belief, from, theirs[i]);
   }
   return true;
 }
@@ -220,24 +249,31 @@ std::optional<Belief> Tracker::arrived(const Belief& belief, gaussian::Stamp sta
 
 // Positions alone are never farther apart than whole states, and cheaper to compare: where they lie
 // outside the gate nothing more is asked.
-Table Tracker::separations(std::span<const std::optional<Belief>> beliefs) const {
-  Table d2(static_cast<int>(beliefs.size()), static_cast<int>(tracks_.size()), infinity);
+Table Tracker::separations(std::span<const Arrival> arrivals) const {
+  Table d2(static_cast<int>(arrivals.size()), static_cast<int>(tracks_.size()), infinity);
   std::vector<std::optional<gaussian::Expected>> places;
   for (const Track& track : tracks_) places.push_back(position(track));
   for (int i = 0; i < d2.rows(); ++i) {
-    const auto& belief = beliefs[static_cast<std::size_t>(i)];
-    if (!belief) continue;
-    const auto theirs = gaussian::expected(*belief, M_);
+    const Arrival& arrival = arrivals[static_cast<std::size_t>(i)];
+    if (!arrival.belief) continue;
+    const auto theirs = gaussian::expected(*arrival.belief, M_);
     for (int j = 0; theirs && j < d2.columns(); ++j) {
       const auto& mine = places[static_cast<std::size_t>(j)];
       if (!mine) continue;
       const auto near = gaussian::nis(*mine, theirs->covariance, theirs->z);
       if (!near || *near > options_.gate) continue;
-      const Track& track = tracks_[static_cast<std::size_t>(j)];
-      d2(i, j) = gaussian::mahalanobis_squared(*belief, track.belief).value_or(infinity);
+      d2(i, j) = separation(arrival, tracks_[static_cast<std::size_t>(j)]);
     }
   }
   return d2;
+}
+
+double Tracker::separation(const Arrival& theirs, const Track& mine) const {
+  const double states =
+      gaussian::mahalanobis_squared(*theirs.belief, mine.belief).value_or(infinity);
+  if (states > options_.gate || theirs.trail == nullptr || !mine.trail) return states;
+  const auto trails = trail_separation(*theirs.trail, *mine.trail, options_.gate);
+  return trails ? std::max(states, *trails) : states;
 }
 
 void Tracker::follow(const LabelTable::Decision& decision, const std::optional<Belief>& belief,
@@ -312,7 +348,7 @@ Tracker::Counts& Tracker::Counts::operator+=(const Counts& other) {
 std::vector<Report> Tracker::reports() const {
   std::vector<Report> out;
   for (const Track& track : tracks_) {
-    if (track.confirmed) out.push_back({track.label, track.belief});
+    if (track.confirmed) out.push_back({track.label, track.belief, track.trail});
   }
   return out;
 }

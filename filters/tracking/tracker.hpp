@@ -29,12 +29,15 @@ struct Track {
   int scans = 0;      ///< that could have seen it
   int hits = 0;       ///< of these
   int misses = 0;     ///< in a row, up to now
+  /// Of this tracker's own plots, if the tracker keeps trails; nothing while it has no plot.
+  std::optional<gaussian::Trajectory> trail;
 };
 
 /// A track as it is told to others.
 struct Report {
   Label label = 0;
   gaussian::Belief belief;
+  std::optional<gaussian::Trajectory> trail;  ///< if it has one
 };
 
 /// Where a scan would have seen an object: within `range` of `centre` (one entry an axis).
@@ -62,6 +65,9 @@ class Tracker {
     int tracks_max = 1000;     ///< no track begins beyond, ≥ 1
     gaussian::Rule rule = gaussian::Rule::none;  ///< one that remembers nothing and sends beliefs
     int apart_max = 3;                           ///< see LabelTable
+    /// For q > 0, ≥ 0: trails are kept for so long, and tracks of others are compared by them, too;
+    /// 0: by their states alone.
+    gaussian::Stamp trail = 0;
   };
   /// Without tracks, at stamp `start`. @throws BrokenInvariant outside the ranges above.
   Tracker(const Options& options, gaussian::Stamp start);
@@ -75,10 +81,11 @@ class Tracker {
   bool scan(gaussian::Stamp stamp, std::span<const gaussian::PositionMeasurement> plots,
             const Coverage& coverage = {});
 
-  /// Uses all tracks that agent `from` had at `stamp`, moved on to now. Under the rule `none`
-  /// nothing happens. What cannot be a belief about such an object, or bears a label twice, is
-  /// refused and counted. False, and all is refused, if the stamp lies in the future:
-  /// predict_to(now) first.
+  /// Uses all tracks that agent `from` had at `stamp`, moved on to now. Where both a track of mine
+  /// and one of theirs have a trail with common stamps, the farther apart of states and trails
+  /// counts (trail_separation()). Under the rule `none` nothing happens. What cannot be a belief
+  /// about such an object, or bears a label twice, is refused and counted. False, and all is
+  /// refused, if the stamp lies in the future: predict_to(now) first.
   bool heard(std::uint32_t from, gaussian::Stamp stamp, std::span<const Report> reports);
   /// Agent `from` counts its labels anew.
   void forget(std::uint32_t from) { table_.forget(from); }
@@ -123,10 +130,17 @@ class Tracker {
   void end_tracks();
   Track* begin();
   void begin_at(const gaussian::PositionMeasurement& plot);
+  gaussian::Belief born_of(const gaussian::PositionMeasurement& plot) const;
+  void leave_trail(Track& track, const gaussian::PositionMeasurement& plot) const;
   bool usable(const gaussian::Belief& belief) const;
   std::optional<gaussian::Belief> arrived(const gaussian::Belief& belief,
                                           gaussian::Stamp stamp) const;
-  Table separations(std::span<const std::optional<gaussian::Belief>> beliefs) const;
+  struct Arrival {
+    std::optional<gaussian::Belief> belief;  // as of now; nothing if it is none
+    const gaussian::Trajectory* trail = nullptr;
+  };
+  Table separations(std::span<const Arrival> arrivals) const;
+  double separation(const Arrival& theirs, const Track& mine) const;
   void follow(const LabelTable::Decision& decision, const std::optional<gaussian::Belief>& belief,
               std::uint32_t from, Label theirs);
   bool fuse(Track& track, const gaussian::Belief& received);

@@ -3,15 +3,18 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <memory>
 
 #include "agents/track_witness.hpp"
+#include "agents/trail_message.hpp"
 
 namespace hearsay {
 namespace {
 
 struct Pair {
-  explicit Pair(gaussian::Rule rule = gaussian::Rule::ci_det)
+  explicit Pair(gaussian::Rule rule = gaussian::Rule::ci_det,
+                std::array<Duration, 2> trails = {Duration(), Duration()})
       : simulation({.end = Time::at(10_s)}), radio(simulation, Topology::full(2), {}) {
     targets.push_back({"a", {{0.0, 0.0}}, Duration()});
     targets.push_back({"b", {{500.0, 0.0}}, Duration()});
@@ -20,6 +23,7 @@ struct Pair {
           simulation, radio, Context::Identity{.id = id, .name = "t", .kind = "tracker"}));
       TrackerAgent::Options options;
       options.tracker = {.q = 0.1, .sigma_max = 50, .tracks_max = 100, .rule = rule};
+      options.tracker.trail = trails[id].nanoseconds();
       if (id == 0) options.sensor.emplace(ScanSensor::Options{});
       options.targets = targets;
       options.talk = PeriodicTalk{.period = 1_s, .phase = 500_ms};
@@ -39,10 +43,10 @@ struct Pair {
     }
     return 0;
   }
-  Packet packet(std::span<const std::byte> bytes) {
+  Packet packet(std::span<const std::byte> bytes, const char* kind = "tracks") {
     return Packet{.sender = 0,
                   .receiver = 1,
-                  .kind = simulation.record().name("tracks"),
+                  .kind = simulation.record().name(kind),
                   .bytes = bytes,
                   .sent = Time(),
                   .rider = nullptr};
@@ -63,6 +67,31 @@ TEST(TrackerAgent, TellsTheOtherOfWhatItSees) {
   EXPECT_FALSE(pair.agents[1]->tracker().tracks()[0].seen);
   EXPECT_GT(pair.agents[1]->tracker().counts().fusions, 10u);
   EXPECT_EQ(pair.refused(), 0u);
+}
+
+// Who keeps trails is understood by who does not, and the other way round.
+TEST(TrackerAgent, TellsOfTrailsIfItKeepsThem) {
+  std::uint64_t bytes[4];
+  for (int i = 0; i < 4; ++i) {
+    Pair pair(gaussian::Rule::ci_det, {Duration::nanoseconds(i % 2 * 4'000'000'000ll),
+                                       Duration::nanoseconds(i / 2 * 4'000'000'000ll)});
+    pair.start();
+    EXPECT_TRUE(pair.simulation.run().ok());
+    ASSERT_EQ(pair.agents[1]->tracker().tracks().size(), 2u);
+    EXPECT_GT(pair.agents[1]->tracker().counts().fusions, 10u);
+    EXPECT_EQ(pair.agents[1]->tracker().counts().refused, 0u);
+    EXPECT_FALSE(pair.agents[1]->tracker().tracks()[0].trail);  // it sees nothing itself
+    const auto& track = pair.agents[0]->tracker().tracks()[0];
+    ASSERT_EQ(track.trail.has_value(), i % 2 == 1);
+    if (track.trail) {
+      EXPECT_EQ(track.trail->steps(), 5);
+    }
+    EXPECT_EQ(pair.refused(), 0u);
+    bytes[i] = pair.radio.counts(0).bytes_sent;
+  }
+  EXPECT_EQ(bytes[0], bytes[2]);
+  EXPECT_EQ(bytes[1], bytes[3]);
+  EXPECT_GT(bytes[1], 5 * bytes[0]);
 }
 
 TEST(TrackerAgent, WithoutARuleSaysNothing) {
@@ -133,6 +162,35 @@ TEST(TrackerAgent, BearsAnyBytes) {
   }
   for (const tracking::Track& track : pair.agents[1]->tracker().tracks()) {
     EXPECT_EQ(gaussian::definiteness(track.belief), gaussian::Definiteness::positive);
+  }
+  EXPECT_LE(pair.agents[1]->tracker().tracks().size(), 100u);
+  EXPECT_GT(pair.agents[1]->tracker().counts().born_of_hearsay, 50u);
+  EXPECT_GT(pair.refused(), 1000u);
+}
+
+TEST(TrackerAgent, BearsAnyBytesOfTrails) {
+  Pair pair(gaussian::Rule::ci_det, {4_s, 4_s});
+  Stream random(1, Purpose("fuzz"), Entity::agent(0));
+  std::vector<std::byte> valid, bytes;
+  gaussian::TrajectoryMessage message;
+  const gaussian::Belief belief = told(0, 1, 0).message.beliefs[0].belief;
+  gaussian::Trajectory trail(4, -2);
+  trail.update(0, belief);
+  trail.augment(-1, gaussian::white_noise_acceleration(2, 1.0, 0.1));
+  for (int i = 0; i < 6000; ++i) {
+    const double x = random.normal(0, 1000);
+    put_tracks(std::vector<tracking::Report>{{7, told(0, 1, x).message.beliefs[0].belief, trail}},
+               0, message);
+    message.count = static_cast<std::uint32_t>(i + 1);
+    gaussian::encode(message, valid);
+    bytes = valid;
+    for (std::uint64_t k = random.below(4); k-- > 0;) {
+      bytes[random.below(bytes.size())] = static_cast<std::byte>(random.below(256));
+    }
+    if (random.below(4) == 0) bytes.resize(random.below(bytes.size() + 1));
+    Packet packet = pair.packet(bytes, "trails");
+    packet.sender = static_cast<AgentId>(2 + i % 150);
+    pair.agents[1]->on_packet(packet);
   }
   EXPECT_LE(pair.agents[1]->tracker().tracks().size(), 100u);
   EXPECT_GT(pair.agents[1]->tracker().counts().born_of_hearsay, 50u);

@@ -3,7 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "net/random_graphs.hpp"
 #include "rule_names.hpp"
+#include "scenarios/links.hpp"
 #include "temp_files.hpp"
 
 namespace hearsay {
@@ -233,6 +237,54 @@ TEST(Scenarios, ThatComeWithTheProgramAreInOrder) {
     ++files;
   }
   EXPECT_GE(files, 4);
+}
+
+/// Whether those of `agents` hear one another, over others of them.
+bool connected(const Topology& graph, const std::vector<AgentId>& agents) {
+  std::vector<AgentId> found = {agents.front()};
+  for (std::size_t next = 0; next < found.size(); ++next) {
+    for (const AgentId agent : agents) {
+      const bool is_new = std::find(found.begin(), found.end(), agent) == found.end();
+      if (is_new && graph.link(found[next], agent) >= 0) found.push_back(agent);
+    }
+  }
+  return found.size() == agents.size();
+}
+
+TEST(Scenarios, TheGeometricGraphOfTheRulesIsTheDrawThatItSaysItIs) {
+  const std::string folder = std::string(HEARSAY_SOURCE_DIR) + "/scenarios/rumour/";
+  const PlacedGraph drawn = random_geometric(25, {.side_m = 100.0, .range_m = 30.0}, 4);
+  std::vector<AgentId> all, left, right;
+  for (AgentId a = 0; a < 25; ++a) {
+    all.push_back(a);
+    (drawn.positions_m[static_cast<std::size_t>(a)][0] < 50.0 ? left : right).push_back(a);
+  }
+  EXPECT_TRUE(connected(drawn.topology, all));
+  EXPECT_TRUE(connected(drawn.topology, left) && connected(drawn.topology, right));
+  int graphs = 0;
+  for (const Cell& cell : cells(load_study(folder + "rules.study.toml", {}))) {
+    const Where geometric = {
+        {"rule", {std::string("none")}},
+        {"network",
+         {std::string("geometric of 25, good"), std::string("geometric of 25, 30 % lost"),
+          std::string("geometric of 25, cut for 30 s")}}};
+    if (!matches(cell, geometric)) continue;
+    ++graphs;
+    const Scenario scenario = load_scenario(folder + "rumour.toml", cell.set, {});
+    const Topology graph = topology_of(scenario, {});
+    ASSERT_EQ(graph.links(), drawn.topology.links());
+    for (const AgentId a : all) {
+      for (const AgentId b : all) {
+        EXPECT_EQ(graph.link(a, b) >= 0, drawn.topology.link(a, b) >= 0) << a << ' ' << b;
+      }
+    }
+    for (const PartitionSpec& cut : scenario.radio.partitions) {
+      EXPECT_EQ(cut.groups.size(), 2u);
+      EXPECT_EQ(cut.groups.at(0), left);
+      EXPECT_EQ(cut.groups.at(1), right);
+    }
+  }
+  EXPECT_EQ(graphs, 3);
 }
 
 TEST_F(StudyLoader, RepetitionsAndFilesAreChecked) {

@@ -114,6 +114,16 @@ TEST_F(TrackerRun, TargetsThatStandStillNeedNoStep) {
   EXPECT_LE(values_of(prepared(text)).missed, 0.2);
 }
 
+TEST_F(TrackerRun, TrailsCostBytesAndLeaveTheTracksRight) {
+  const Values states = values_of(prepared(scenario));
+  const Values trails =
+      values_of(prepared(with("sigma_max_m = 40", "sigma_max_m = 40, trail_s = 20")));
+  EXPECT_LE(trails.missed, 0.2);
+  EXPECT_EQ(trails.scalars.at("label_swaps"), 0.0);
+  EXPECT_GT(trails.scalars.at("fusions"), 20.0);
+  EXPECT_GT(trails.scalars.at("bytes_sent"), 5.0 * states.scalars.at("bytes_sent"));
+}
+
 TEST_F(TrackerRun, WhatDoesNotGoTogetherIsRefused) {
   EXPECT_EQ(error("acceleration_psd_m2_per_s3 = 0.05, ", ""),
             "s.toml:18: agents[0].tracker: without acceleration_psd_m2_per_s3 it believes that "
@@ -137,6 +147,12 @@ TEST_F(TrackerRun, WhatDoesNotGoTogetherIsRefused) {
       error("sigma_m = 2, range_max_m = 160", "period_s = 0.5, sigma_m = 2, range_max_m = 160"),
       "s.toml:17: agents[0].sensor.period_s: must be a multiple of world.step_s (1.0 s), for "
       "targets that move are looked at there alone");
+}
+
+TEST_F(TrackerRun, TrailsAreOfTargetsThatMove) {
+  EXPECT_EQ(error("acceleration_psd_m2_per_s3 = 0.05, ", "trail_s = 20, "),
+            "s.toml:18: agents[0].tracker.trail_s: needs acceleration_psd_m2_per_s3: trails are of "
+            "targets that move");
 }
 
 TEST_F(TrackerRun, KeysOfTrackersAreForTrackersAlone) {

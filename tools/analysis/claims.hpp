@@ -24,9 +24,11 @@
 // Infinite values (a time that never came, a gap to an empty central filter) count under median,
 // max, min and any, where of two infinite ones neither is the greater; mean and rms leave them out
 // as missing, and are therefore refused for agree_again_s.
-// anees is the mean of nees, divided by the state's dimension. `over` divides the aggregate by that
-// of another metric (with max, min, any or a scale of log10: each repetition's value). With scale
-// log10 values, and the bounds, are logarithms; values that are not positive count as missing.
+// anees is the mean of nees, divided by the state's dimension; bytes_per_m_saved is bytes_sent over
+// distance_saved_m, quotients of means, and has no value where the latter is not positive. `over`
+// divides the aggregate by that of another metric (with max, min, any or a scale of log10: each
+// repetition's value). With scale log10 values, and the bounds, are logarithms; values that are not
+// positive count as missing.
 //
 // Kinds:
 //   at_most, at_least, within     the aggregate against bounds

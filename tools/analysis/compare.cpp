@@ -49,6 +49,10 @@ class Comparer {
         values_(file, only_study(file, options), stored_names(rule_)) {}
 
   std::vector<CompareRow> rows() {
+    if (!rule_.over.empty()) {
+      throw InputError(fmt::format("{} is a quotient of means, for claims; compare {} and {}",
+                                   rule_.name, rule_.stored, rule_.over));
+    }
     reader_.emplace(values_, rule_, rule_.median);
     column_ = reader_->column();
     if (column_ == nullptr) {

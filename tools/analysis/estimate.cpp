@@ -236,7 +236,7 @@ Finding examine(const ClaimRules& rules, const Comparison& comparison, std::size
 std::string quantity(const ClaimRules& rules) {
   const Expectation& expect = rules.claim->expect;
   const std::string scale = rules.log10 ? "log10 " : "";
-  const std::string metric = rules.over
+  const std::string metric = rules.over && rules.metric.over.empty()
                                  ? fmt::format("{}{} / {}", scale, expect.metric, rules.over->name)
                                  : scale + expect.metric;
   if (expect.kind == Kind::falls_as) return "exponent of " + rules.metric.name + " over time";

@@ -102,7 +102,7 @@ std::optional<double> Reader::value_of_agent(std::size_t run, AgentId agent, con
 }
 
 MetricRule metric_rule(const std::string& name, bool chi2_band) {
-  static constexpr std::array<std::string_view, 8> root_mean_squares = {
+  static constexpr std::array<std::string_view, 9> root_mean_squares = {
       "rms_error_m",
       "claimed_sigma_m",
       "true_sigma_m",
@@ -110,8 +110,13 @@ MetricRule metric_rule(const std::string& name, bool chi2_band) {
       "velocity_error_m_per_s",
       "claimed_velocity_sigma_m_per_s",
       "x_error_m",
-      "y_error_m"};
+      "y_error_m",
+      "heading_error_rms_rad"};
   MetricRule rule{.name = name, .stored = name == "anees" ? "nees" : name};
+  if (name == "bytes_per_m_saved") {
+    rule.stored = "bytes_sent";
+    rule.over = "distance_saved_m";
+  }
   rule.rms = std::find(root_mean_squares.begin(), root_mean_squares.end(), name) !=
              root_mean_squares.end();
   rule.median = name == "agree_again_s";

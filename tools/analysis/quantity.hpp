@@ -16,6 +16,7 @@ namespace hearsay::analysis {
 struct MetricRule {
   std::string name;
   std::string stored;          ///< what the database calls what it is made from
+  std::string over = "";       ///< … and what its aggregate is divided by, if it is a quotient
   bool per_dimension = false;  ///< divided by the scalar state_dimension
   bool rms = false;            ///< averaged as a root mean square
   bool median = false;         ///< a time that may never come: infinite values count

@@ -56,16 +56,28 @@ class Checker {
                    "a trend is the mean of its repetitions' slopes; leave statistic out");
     }
     if (expect.kind == Kind::agrees_with) {
-      require_that(averages && !expect.over, "agreement is of means or root mean squares");
+      require_that(averages && !rules.over, "agreement is of means or root mean squares");
     }
     require_that(!rules.paired || statistic != Statistic::any,
                  "statistic \"any\" goes with at_most, at_least, within");
     require_that(expect.scale != "log10" || statistic != Statistic::rms,
                  "a root mean square of logarithms has no meaning");
     if (expect.chi2_band) check_band(rules);
+    check_quotients(expect);
   }
 
  private:
+  void check_quotients(const Expectation& expect) const {
+    const auto quotient = [](const std::string& name) { return !metric_rule(name).over.empty(); };
+    require_that(
+        !quotient(expect.metric) || (!expect.over && !expect.than_metric),
+        fmt::format("{} is a quotient by itself; leave over and than_metric out", expect.metric));
+    for (const auto& other : {expect.over, expect.than_metric}) {
+      require_that(!other || !quotient(*other),
+                   fmt::format("{} is a quotient; it can only be the metric", other.value_or("")));
+    }
+  }
+
   void check_band(const ClaimRules& rules) const {
     const Expectation& expect = claim_.expect;
     require_that(expect.kind == Kind::at_most || expect.kind == Kind::at_least ||
@@ -109,6 +121,7 @@ ClaimRules rules_of(const Study& study, const Claim& claim) {
   rules.claim = &claim;
   rules.metric = metric_rule(expect.metric, expect.chi2_band);
   if (expect.over) rules.over = metric_rule(*expect.over);
+  if (!rules.metric.over.empty()) rules.over = metric_rule(rules.metric.over);
   rules.other = metric_rule(expect.than_metric.value_or(expect.metric));
   rules.paired = expect.kind == Kind::less_than || expect.kind == Kind::greater_than ||
                  expect.kind == Kind::agrees_with;

@@ -16,6 +16,8 @@ import panels
 import style
 
 OVERCONFIDENT, CAUTIOUS = style.VERMILLION, style.BLUE
+BEST = "#dff0e6"
+OVER = 1.0 + 1e-6  # an agent of larger ANEES claims more than is true: the ledger's is exact
 HONEST = 1.1  # a claim within this factor of the truth is drawn in black
 
 
@@ -30,6 +32,8 @@ class Ends:
         self.topologies = list(dict.fromkeys(topology for topology, _, _ in pairs))
         self.radios = list(dict.fromkeys(radio for _, _, radio in pairs))
         self.series = chosen.series(("rms_error_m", "claimed_sigma_m"), at_end=True)
+        has_ledger = chosen.has_series("ledger_anees")
+        self.anees = chosen.series(("ledger_anees",), at_end=True)["ledger_anees"] if has_ledger else None
 
     def of(self, rule, topology, radio, agents="agents"):
         """(error, low, high, claimed); NaN where the study has no such cell or no value."""
@@ -39,6 +43,30 @@ class Ends:
         error = panels.rms(self.series["rms_error_m"], cell, agents, interval=True)
         claimed = panels.rms(self.series["claimed_sigma_m"], cell, agents)
         return error.value[0], error.low[0], error.high[0], claimed.value[0]
+
+
+    def worst_anees(self, rule, topology, radio):
+        """By the ledger: the largest over agents of the mean over repetitions. Infinite if a belief
+        was none, NaN where the study has no such cell."""
+        cell = self.chosen.cell(rule=rule, network=f"{topology}, {radio}")
+        if cell is None:
+            return np.nan
+        claimed = self.series["claimed_sigma_m"]
+        if (claimed.of("count", "agents")[cell] < claimed.of("asked", "agents")[cell]).any():
+            return np.inf
+        total, count = (self.anees.of(array, "agents")[cell] for array in ("total", "count"))
+        with np.errstate(invalid="ignore"):
+            return float(np.nanmax(total.sum(axis=(0, 1)) / count.sum(axis=(0, 1))))
+
+    def honest(self, rule, topology, radio):
+        """Whether no agent claims more than is true."""
+        return self.anees is not None and self.worst_anees(rule, topology, radio) <= OVER
+
+    def best(self, topology, radio):
+        """The rules that err least, to 1 %, of those that are honest."""
+        errors = {r: self.of(r, topology, radio)[0] for r in self.rules if self.honest(r, topology, radio)}
+        least = min(errors.values(), default=np.nan)
+        return [rule for rule, error in errors.items() if error <= 1.01 * least]
 
 
 def color_of(error, claimed):
@@ -72,7 +100,10 @@ def dumbbell(axes, y, values, limits):
     if error >= right:
         remark += f"{', ' if remark else ''}errs {style.number(error)}"
     if remark:
-        axes.text(left * 1.12, y + 0.16, remark, fontsize=6.0, color=color, va="bottom")
+        axes.text(
+            left * 1.12, y + 0.2, remark, fontsize=6.0, color=color, va="bottom", zorder=6,
+            bbox=dict(boxstyle="square,pad=0.05", fc="white", ec="none"),
+        )
 
 
 def draw(figure, grid, ends, limits):
@@ -92,7 +123,10 @@ def draw(figure, grid, ends, limits):
             axes.minorticks_off()
             central = [ends.of(r, topology, radio, "central")[0] for r in rules]
             axes.axvline(np.nanmean(central), color=style.BLACK, lw=0.9, ls=(0, (4, 2)), zorder=1)
+            best = ends.best(topology, radio)
             for y, rule in zip(places, rules):
+                if rule in best:
+                    axes.axhspan(y - 0.45, y + 0.45, color=BEST, lw=0.0, zorder=0)
                 dumbbell(axes, y, ends.of(rule, topology, radio), limits)
             if i == 0:
                 axes.set_title(topology, fontweight="bold")
@@ -108,6 +142,11 @@ def caption(ends):
         f"Black: claim and truth within a factor {HONEST:g}. Axis in m a coordinate; what lies beyond it"
         " is written in the row.",
     ]
+    if ends.anees is not None:
+        sentences.append(
+            "Shaded: errs least, to 1 %, of the rules under which no agent claims more than is true, by the"
+            " ledger."
+        )
     if chosen.failed:
         sentences.append(f"{chosen.failed} failed runs left out.")
     return sentences

@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "dense_trajectory.hpp"
 #include "samples.hpp"
 #include "sim/kernel/error.hpp"
 
@@ -31,6 +34,48 @@ TEST(Nis, IsTheDenseFormula) {
       EXPECT_NEAR(*nis(belief, M, S, z), dense, 1e-10 * dense);
     }
   }
+}
+
+TEST(Nis, OfInformationIsThatOfTheMeasurement) {
+  Stream random = stream("nis of information");
+  for (int trial = 0; trial < 200; ++trial) {
+    const int n = 1 + trial % 6, m = 1 + trial % std::min(n, 3);
+    const Belief belief = random_belief(random, n);
+    const Belief seen = random_belief(random, m);
+    const Dense S = Dense(seen.omega).inverse(), sigma = Dense(belief.omega).inverse();
+    const Eigen::VectorXd v = S * seen.xi - (sigma * belief.xi).head(m);
+    const double dense = quadratic(v, sigma.topLeftCorner(m, m) + S);
+    EXPECT_NEAR(*nis(belief, seen), dense, 1e-9 * dense) << n << m;
+  }
+}
+
+TEST(Nis, OfInformationDoesNotDependOnUnits) {
+  Stream random = stream("nis units");
+  const Eigen::Vector2d units(1e-70, 1e60);
+  for (int trial = 0; trial < 50; ++trial) {
+    const Belief belief = random_belief(random, 2), seen = random_belief(random, 2);
+    const auto scaled = [&](const Belief& b) {
+      return Belief{Matrix(units.asDiagonal() * b.omega * units.asDiagonal()),
+                    Vector(units.asDiagonal() * b.xi)};
+    };
+    const double expected = *nis(belief, seen);
+    EXPECT_NEAR(*nis(scaled(belief), scaled(seen)), expected, 1e-11 * expected);
+  }
+}
+
+TEST(Nis, OfInformationIsNothingWhereEitherIsSingular) {
+  Stream random = stream("nis singular");
+  const Belief good = random_belief(random, 2);
+  const double inf = std::numeric_limits<double>::infinity();
+  const Matrix line = matrix({{1, 3}, {3, 9}});
+  for (const Matrix& bad : {Matrix(Matrix::Zero(2, 2)), line, diagonal({1, -1}), diagonal({0, 1}),
+                            diagonal({inf, 1}), diagonal({std::nan(""), 1}), diagonal({-1, -1})}) {
+    EXPECT_FALSE(nis({bad, vector({0, 0})}, good)) << bad;
+    EXPECT_FALSE(nis(good, {bad, vector({0, 0})})) << bad;
+  }
+  EXPECT_FALSE(nis(good, {diagonal({1, 1}), vector({inf, 0})}));
+  EXPECT_FALSE(nis(random_belief(random, 4), {line, vector({0, 0})}));
+  EXPECT_THROW(nis(good, random_belief(random, 3)), BrokenInvariant);
 }
 
 // The mean of 4000 draws of χ² with m degrees of freedom is m ± √(2m/4000).
@@ -102,17 +147,8 @@ struct Moments {
 };
 Moments dense_moments(const Trajectory& t, const std::vector<Stamp>& stamps) {
   const int n = t.dimension();
-  Dense omega = Dense::Zero(n * t.steps(), n * t.steps());
-  Eigen::VectorXd xi(n * t.steps());
-  for (int k = 0; k < t.steps(); ++k) {
-    omega.block(n * k, n * k, n, n) = t.omega(k);
-    xi.segment(n * k, n) = t.xi(k);
-    if (k + 1 == t.steps()) break;
-    omega.block(n * k, n * (k + 1), n, n) = t.omega_next(k);
-    omega.block(n * (k + 1), n * k, n, n) = t.omega_next(k).transpose();
-  }
-  const Dense sigma = omega.inverse();
-  const Eigen::VectorXd mu = sigma * xi;
+  const Dense sigma = dense(t).inverse();
+  const Eigen::VectorXd mu = sigma * dense_vector(t);
   const auto size = static_cast<Eigen::Index>(stamps.size());
   Moments out{Eigen::VectorXd(n * size), Dense(n * size, n * size)};
   for (Eigen::Index i = 0; i < size; ++i) {

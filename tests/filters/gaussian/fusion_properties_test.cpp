@@ -5,9 +5,13 @@
 #include <Eigen/LU>
 #include <Eigen/SVD>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "filters/gaussian/fusion.hpp"
 #include "filters/ledger/ledger.hpp"
@@ -22,26 +26,28 @@ struct Character {
   bool idempotent;    ///< fusing a belief with itself changes nothing
   bool commutative;   ///< sender and receiver end with the same belief
   bool conservative;  ///< under any correlation, if both beliefs are
+  bool any_order;     ///< of two beliefs that are heard either may come first
+  bool any_units;     ///< other units on the axes change nothing
 };
 constexpr Character characters[] = {
-    {Rule::none, true, false, true},
-    {Rule::naive, false, true, false},
-    {Rule::local_update, false, true, false},
-    {Rule::channel, false, true, false},
-    {Rule::channel_robust, false, true, false},
-    {Rule::ci_det, true, true, true},
-    {Rule::ci_trace, true, true, true},
-    {Rule::ci_half, true, true, true},
-    {Rule::ci_fixed, true, false, true},  // but for ω = ½
-    {Rule::ci_niehsen, true, true, true},
-    {Rule::ci_franken_huepper, true, true, true},
-    {Rule::most_certain, true, true, true},
-    {Rule::inverse_ci, true, true, false},
-    {Rule::ellipsoidal, true, true, false},
-    {Rule::ci_batch, true, true, true},
-    {Rule::split_ci, true, true, true},  // nothing fresh: split_test.cpp has the rest
-    {Rule::consensus_information, true, false, true},
-    {Rule::hybrid_consensus, true, false, true},  // nothing fresh
+    {Rule::none, true, false, true, true, true},
+    {Rule::naive, false, true, false, true, true},
+    {Rule::local_update, false, true, false, true, true},
+    {Rule::channel, false, true, false, true, true},
+    {Rule::channel_robust, false, true, false, true, true},
+    {Rule::ci_det, true, true, true, false, true},
+    {Rule::ci_trace, true, true, true, false, false},
+    {Rule::ci_half, true, true, true, false, true},
+    {Rule::ci_fixed, true, false, true, false, true},  // but for ω = ½
+    {Rule::ci_niehsen, true, true, true, false, false},
+    {Rule::ci_franken_huepper, true, true, true, false, true},
+    {Rule::most_certain, true, true, true, true, true},
+    {Rule::inverse_ci, true, true, false, false, true},
+    {Rule::ellipsoidal, true, true, false, false, true},
+    {Rule::ci_batch, true, true, true, true, true},
+    {Rule::split_ci, true, true, true, false, true},  // nothing fresh: split_test.cpp has the rest
+    {Rule::consensus_information, true, false, true, true, true},
+    {Rule::hybrid_consensus, true, false, true, true, true},  // nothing fresh
 };
 
 class EveryRule : public testing::TestWithParam<RuleInfo> {
@@ -72,6 +78,70 @@ TEST_P(EveryRule, LeavesASymmetricMatrix) {
     EXPECT_EQ(sum.omega, Matrix(sum.omega.transpose()));
     EXPECT_TRUE(sum.omega.allFinite());
   }
+}
+
+TEST_P(EveryRule, LeavesAPositiveDefiniteMatrixOfTwo) {
+  Stream random = stream("definiteness");
+  for (int trial = 0; trial < 300; ++trial) {
+    const int n = 1 + trial % dimension_max;
+    const Belief a = random_belief(random, n), b = random_belief(random, n);
+    // With nothing in common: a channel takes away what it is told, whatever comes of it.
+    const Belief sum = fused(rule(), a, b, Belief::unknown(n));
+    EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(sum.omega).eigenvalues()(0), 0.0);
+    EXPECT_EQ(definiteness(sum), Definiteness::positive);
+  }
+}
+
+/// What somebody believes who has heard b and then c.
+Belief fused_of_three(Rule rule, const Belief& a, const Belief& b, const Belief& c) {
+  const Belief nothing = Belief::unknown(a.dimension());
+  if (info(rule).fuses != Fuses::at_once) {
+    return fused(rule, fused(rule, a, b, nothing), c, nothing);
+  }
+  std::vector<double> weights(3, metropolis_weight(2, 2));
+  if (rule == Rule::ci_batch) {
+    const Matrix* const all[] = {&a.omega, &b.omega, &c.omega};
+    BatchIntersection batch;
+    const std::span<const double> found = batch.weights(all);
+    weights.assign(found.begin(), found.end());
+  }
+  return fused({1.0, weights[2], 0.0, nullptr},
+               fused({weights[0], weights[1], 0.0, nullptr}, a, b, {}), c, {});
+}
+
+TEST_P(EveryRule, WhoeverIsHeardFirst) {
+  Stream random = stream("order");
+  double greatest = 0.0;
+  for (int trial = 0; trial < 200; ++trial) {
+    const int n = 1 + trial % 4;
+    const Belief a = random_belief(random, n), b = random_belief(random, n);
+    const Belief c = random_belief(random, n);
+    const Belief one = fused_of_three(rule(), a, b, c), other = fused_of_three(rule(), a, c, b);
+    greatest = std::max({greatest, relative(one.omega, other.omega), relative(one.xi, other.xi)});
+  }
+  EXPECT_EQ(greatest < 1e-5, character().any_order) << greatest;
+}
+
+TEST_P(EveryRule, InOtherUnits) {
+  Stream random = stream("units");
+  double greatest = 0.0;
+  for (int trial = 0; trial < 200; ++trial) {
+    const int n = 2 + trial % 3;
+    const Belief a = random_belief(random, n), b = random_belief(random, n);
+    Eigen::VectorXd units(n);
+    for (double& unit : units) unit = std::pow(10.0, random.uniform(-4.0, 4.0));
+    const auto scaled = [&](const Belief& belief) {
+      return Belief{Matrix(units.asDiagonal() * belief.omega * units.asDiagonal()),
+                    Vector(units.asDiagonal() * belief.xi)};
+    };
+    const Belief sum = fused(rule(), a, b, Belief::unknown(n));
+    Belief other = fused(rule(), scaled(a), scaled(b), Belief::unknown(n));
+    const Eigen::VectorXd back = units.cwiseInverse();
+    const Matrix omega = back.asDiagonal() * other.omega * back.asDiagonal();
+    const Vector xi = back.asDiagonal() * other.xi;
+    greatest = std::max({greatest, relative(omega, sum.omega), relative(xi, sum.xi)});
+  }
+  EXPECT_EQ(greatest < 1e-5, character().any_units) << greatest;
 }
 
 TEST_P(EveryRule, FusingABeliefWithItself) {
@@ -187,6 +257,62 @@ TEST_P(EveryRule, TheLedgerSaysWhatTheBeliefSays) {
     EXPECT_LT((sum.omega - beliefs[i].omega).norm(), 1e-9 * size) << step;
     EXPECT_LT((sum.xi - beliefs[i].xi).norm(), 1e-9 * size) << step;
   }
+}
+
+/// Weights of both covariances' inverses for the published pair x₁ = (1, −2), P₁ = diag(3, 0.4);
+/// x₂ = (−2, −1), P₂ = (2 −0.8; −0.8 1): published, or what the rule says by itself. Those by
+/// direction have no such weights: directional_test.cpp has their formulas.
+std::optional<std::array<double, 2>> weights_of_published_pair(Rule rule) {
+  constexpr double det = 0.564516, trace = 0.403703, franken_huepper = 0.512579, niehsen = 0.468750;
+  switch (rule) {
+    case Rule::none:
+    case Rule::most_certain:  // |P₁| = 1.2 < |P₂| = 1.36
+      return {{1.0, 0.0}};
+    case Rule::naive:
+    case Rule::local_update:
+    case Rule::channel:  // nothing was exchanged before
+    case Rule::channel_robust:
+      return {{1.0, 1.0}};
+    case Rule::ci_det:
+    case Rule::ci_batch:  // of two
+    case Rule::split_ci:  // of which nothing is fresh
+      return {{det, 1.0 - det}};
+    case Rule::ci_trace:
+      return {{trace, 1.0 - trace}};
+    case Rule::ci_half:
+      return {{0.5, 0.5}};
+    case Rule::ci_fixed:
+      return {{weight_of_own, 1.0 - weight_of_own}};
+    case Rule::ci_franken_huepper:
+      return {{franken_huepper, 1.0 - franken_huepper}};
+    case Rule::ci_niehsen:
+      return {{niehsen, 1.0 - niehsen}};
+    case Rule::consensus_information:  // both of two neighbours: 1 − 1/3 and 1/3
+    case Rule::hybrid_consensus:
+      return {{2.0 / 3.0, 1.0 / 3.0}};
+    case Rule::inverse_ci:
+    case Rule::ellipsoidal:
+      break;
+  }
+  return std::nullopt;
+}
+
+TEST_P(EveryRule, OfThePublishedPair) {
+  const auto weights = weights_of_published_pair(rule());
+  if (!weights) {
+    EXPECT_EQ(info(rule()).fuses, Fuses::by_direction);
+    return;
+  }
+  const Eigen::MatrixXd A = Eigen::Vector2d(1.0 / 3.0, 2.5).asDiagonal();
+  const Eigen::MatrixXd B = Eigen::MatrixXd(matrix({{2, -0.8}, {-0.8, 1}})).inverse();
+  const Belief a{Matrix(A), Vector(A * Eigen::Vector2d(1, -2))};
+  const Belief b{Matrix(B), Vector(B * Eigen::Vector2d(-2, -1))};
+  const Belief sum = fused(rule(), a, b, Belief::unknown(2));
+  const auto& [own, received] = *weights;
+  const Eigen::MatrixXd P = (own * A + received * B).inverse();
+  const Eigen::Vector2d x = P * (own * a.xi + received * b.xi);
+  EXPECT_LT((Eigen::MatrixXd(sum.omega).inverse() - P).norm(), 5e-6);
+  EXPECT_LT((Eigen::MatrixXd(sum.omega).inverse() * sum.xi - x).norm(), 5e-6);
 }
 
 INSTANTIATE_TEST_SUITE_P(FusionRules, EveryRule, testing::ValuesIn(rules().begin(), rules().end()),

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "dense_trajectory.hpp"
 #include "filters/gaussian/trajectory_factor.hpp"
 #include "samples.hpp"
 #include "sim/kernel/error.hpp"
@@ -91,24 +92,6 @@ struct LeastSquares {
   Dense information() const { return rows.transpose() * rows; }
   Dense covariance() const { return information().inverse(); }
 };
-
-Dense dense(const Trajectory& t) {
-  const int n = t.dimension();
-  Dense m = Dense::Zero(n * t.steps(), n * t.steps());
-  for (int k = 0; k < t.steps(); ++k) {
-    m.block(n * k, n * k, n, n) = t.omega(k);
-    if (k + 1 == t.steps()) break;
-    m.block(n * k, n * (k + 1), n, n) = t.omega_next(k);
-    m.block(n * (k + 1), n * k, n, n) = t.omega_next(k).transpose();
-  }
-  return m;
-}
-
-Eigen::VectorXd dense_vector(const Trajectory& t) {
-  Eigen::VectorXd v(t.dimension() * t.steps());
-  for (int k = 0; k < t.steps(); ++k) v.segment(t.dimension() * k, t.dimension()) = t.xi(k);
-  return v;
-}
 
 Eigen::VectorXd stacked(const std::vector<Vector>& parts) {
   Eigen::VectorXd v(0);

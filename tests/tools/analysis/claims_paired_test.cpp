@@ -140,6 +140,42 @@ TEST(PairedClaims, RatiosOfAggregatesCanBeComparedToo) {
   EXPECT_EQ(result.bound_high, 1.0);
 }
 
+TEST(PairedClaims, BytesPerMetreSavedIsAQuotientOfMeans) {
+  Bed bed(40, 1);
+  bed.axis("rule", {text("a"), text("b"), text("worse")});
+  double bytes = 0.0, saved = 0.0;
+  bed.fill([&](const Asked& asked, Rows& rows) {
+    Stream stream = draws(asked.repetition, 0);
+    const bool is_a = asked.labels.at("rule") == "a";
+    const double sent = (is_a ? 100.0 : 300.0) + asked.repetition;
+    const double metres = (asked.labels.at("rule") == "worse" ? -1.0 : 1.0) + 0.1 * stream.normal();
+    rows.scalar(0, "bytes_sent", sent);
+    rows.scalar(0, "distance_saved_m", metres);
+    bytes += is_a ? sent : 0.0;
+    saved += is_a ? metres : 0.0;
+    return Outcome::finished;
+  });
+  Expectation expect = at_least("bytes_per_m_saved", 110.0);
+  expect.where["rule"] = {text("a")};
+  const ClaimResult result = bed.judge(expect);
+  EXPECT_NEAR(result.worst.estimate, bytes / saved, 1e-9);
+  EXPECT_EQ(result.quantity, "bytes_per_m_saved");
+  EXPECT_EQ(result.verdict, Verdict::reproduced);
+  EXPECT_EQ(bed.verdict(compared("bytes_per_m_saved", "a", Kind::less_than, "b")),
+            Verdict::reproduced);
+  EXPECT_EQ(bed.verdict(compared("bytes_per_m_saved", "b", Kind::less_than, "a")),
+            Verdict::not_reproduced);
+  // Where nothing is saved there is no such number.
+  EXPECT_EQ(bed.verdict(compared("bytes_per_m_saved", "worse", Kind::less_than, "a")),
+            Verdict::undecided);
+  expect.over = "bytes_sent";
+  EXPECT_THROW(bed.judge(expect), InputError);
+  expect = at_least("bytes_sent", 0.0);
+  expect.over = "bytes_per_m_saved";
+  EXPECT_THROW(bed.judge(expect), InputError);
+  EXPECT_THROW(compare(bed.file(), {.metric = "bytes_per_m_saved", .by = "rule"}), InputError);
+}
+
 TEST(PairedClaims, ExtremesHoldInEveryRepetition) {
   Rules bed;
   Expectation expect = compared("rms_error_m", "ci", Kind::less_than, "none");

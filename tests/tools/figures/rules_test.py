@@ -53,6 +53,11 @@ class Rules(WithDatabase):
         self.assertEqual(rules.color_of(1.0, 0.5), rules.OVERCONFIDENT)
         self.assertEqual(rules.color_of(1.0, math.nan), rules.OVERCONFIDENT)
 
+    def test_without_a_ledger_nobody_is_called_honest(self):
+        self.make_study()
+        self.assertEqual(self.ends().best("ring", "good"), [])
+        self.assertNotIn("Shaded", self.draw("rules.py", "rules.svg").decode())
+
     def test_the_figure_says_what_was_measured(self):
         self.make_study()
         self.assert_says("4 paired repetitions", "my-rule", "radio: good", "overconfident")

@@ -34,7 +34,7 @@ class DeadReckoning {
   Duration memory_, step_;
   std::vector<Sample> ring_;
   std::size_t begin_ = 0, count_ = 0;
-  Sample now_;
+  Sample now_{};
 };
 
 }  // namespace hearsay

@@ -84,7 +84,8 @@ void LocalizerAgent::meet(const Encounter& encounter) {
     ++counts_.measurements;
     witness_.saw_place(context().id(), options_.landmarks[subject], seen);
     const localization::Use use = filter_.saw_place(0, options_.landmarks[subject], seen);
-    if (use != localization::Use::used) ++counts_.outside_gate;
+    if (use == localization::Use::outside_gate) ++counts_.outside_gate;
+    if (use == localization::Use::no_direction) ++counts_.skipped;
   }
 }
 
@@ -150,10 +151,18 @@ void LocalizerAgent::on_packet(const Packet& packet) {
   Companion& from = companion(packet.sender);
   if (about == context().id()) {
     told_of_self(from, when, *place);
-  } else if (about == packet.sender && (!from.said || when > from.said_at)) {
-    from.said = place;
-    from.said_at = when;
+  } else if (about == packet.sender) {
+    told_of_sender(from, when, *place);
   }
+}
+
+void LocalizerAgent::told_of_sender(Companion& from, Time when, const Place& place) {
+  if (from.said && when <= from.said_at) {  // twice, or overtaken
+    ++counts_.refused;
+    return;
+  }
+  from.said = place;
+  from.said_at = when;
 }
 
 void LocalizerAgent::told_of_self(Companion& from, Time when, const Place& place) {

@@ -69,6 +69,7 @@ class LocalizerAgent final : public Agent {
   void meet_companion(const Encounter& encounter, const localization::RelativeSighting& seen);
   Process talk();
   void say(std::uint64_t tick, AgentId about, Time when, const localization::Place& place);
+  void told_of_sender(Companion& from, Time when, const localization::Place& place);
   void told_of_self(Companion& from, Time when, const localization::Place& place);
   void count(localization::Taken taken);
   localization::Fusion fusion() const { return {options_.rule, options_.filter.gate}; }

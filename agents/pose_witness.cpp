@@ -47,10 +47,10 @@ void PoseWitness::saw_robot(AgentId agent, AgentId other,
 void PoseWitness::start() { schedule_sample(Time()); }
 
 void PoseWitness::schedule_sample(Time at) {
-  if (at > simulation_.end()) return;
   simulation_.schedule(at, Phase::observe, [this, at] {
     sample();
-    schedule_sample(at + options_.series_period);
+    if (at == simulation_.end()) return;
+    schedule_sample(std::min(at + options_.series_period, simulation_.end()));
   });
 }
 
@@ -63,7 +63,6 @@ std::optional<localization::Pose> PoseWitness::truth(std::size_t robot) const {
 }
 
 void PoseWitness::sample() {
-  last_sample_ = simulation_.now();
   for (std::size_t robot = 0; robot < odometers_.size(); ++robot) {
     advance(robot);
     const auto i = static_cast<int>(robot);
@@ -117,7 +116,6 @@ void PoseWitness::leave(AgentId agent, const Sums& sums) {
 }
 
 void PoseWitness::finish() {
-  if (last_sample_ != simulation_.now()) sample();
   Record& record = simulation_.record();
   record.scalar(central_agent, record.name("state_dimension"), 3.0);
   leave(central_agent, central_sums_);

@@ -35,10 +35,9 @@ class PoseWitness {
                  const localization::RelativeSighting& seen);
   void saw_robot(AgentId agent, AgentId other, const localization::RelativeSighting& seen);
 
-  /// Schedules the samples up to the end of the run. Once, before it starts.
+  /// Schedules the samples up to the end of the run, which it has. Once, before it starts.
   void start();
-  /// Takes the last sample (unless it was due at this very instant) and leaves final values: means
-  /// over samples.
+  /// Leaves final values: means over samples.
   void finish();
 
  private:
@@ -68,7 +67,6 @@ class PoseWitness {
   std::vector<Watched> watched_;
   std::vector<NameId> names_;  // of the robots
   Sums central_sums_;
-  std::optional<Time> last_sample_;
 };
 
 }  // namespace hearsay

@@ -25,10 +25,10 @@ class Checker {
     check_services(file_);
     check_talk(file_);
     check_motion(file_);
+    check_localizers(file_);
     check_estimators(file_);
     check_sensors(file_);
     check_trackers(file_);
-    check_localizers(file_);
     check_traffic(file_);
     check_radio(file_);
     check_agreement();

@@ -17,7 +17,8 @@ inline std::vector<std::string> localizer_fusion_names() {
     const bool fits =
         (rule.sends == gaussian::Sends::nothing || rule.sends == gaussian::Sends::belief) &&
         rule.fuses == gaussian::Fuses::by_weight && rule.memory == gaussian::Memory::nothing &&
-        rule.rule != gaussian::Rule::ci_fixed;  // there is no key for its weight
+        rule.rule != gaussian::Rule::ci_fixed &&    // there is no key for its weight
+        rule.rule != gaussian::Rule::most_certain;  // a message never tells the whole pose
     if (fits) names.emplace_back(rule.name);
   }
   return names;

@@ -51,9 +51,13 @@ class EstimatorChecker {
 };
 
 void EstimatorChecker::check_step() const {
-  if (!world_.step_s) return;
   const KeyPath world = top_["world"];
   const KeyPath path = world["step_s"];
+  if (!world_.step_s) {
+    if (!world_.log || world_.log->subjects == "landmarks") return;
+    file_.fail(path,
+               "missing; the robots of [world.log] move, and are believed in at its multiples");
+  }
   if (world_.log && world_.log->subjects == "landmarks") {
     file_.fail(path, "not with the landmarks of [world.log], which stand still");
   }

@@ -12,8 +12,15 @@ void check_localizer(const ScenarioUnderCheck& file, const AgentSpec& agent, con
   const KeyPath sensor = path["sensor"];
   const KeyPath talk = path["talk"];
   const KeyPath localizer = path["localizer"];
+  const KeyPath top;
+  const KeyPath world = top["world"];
+  const KeyPath log = world["log"];
   if (!file.scenario.world.log) {
     file.fail(path["kind"], "\"localizer\" needs a [world.log] with odometry");
+  }
+  if (file.scenario.world.log->subjects != "landmarks") {
+    file.fail(log["subjects"],
+              "without effect: agents of kind \"localizer\" believe in their own poses alone");
   }
   if (agent.sensor.kind != "log") {
     file.fail(sensor["kind"],

@@ -26,11 +26,25 @@ gaussian::Belief information_of(const mrclam::PoseSample& pose, double range_m, 
   return gaussian::measurement_information(identity, measured.S, measured.z);
 }
 
+constexpr double steps_max = 1e6;  // of a run
+
 /// When the truth of the first robot ends, and whose that is.
 const mrclam::Robot& first_to_end(const mrclam::Dataset& log) {
   return *std::min_element(log.robots.begin(), log.robots.end(), [](const auto& a, const auto& b) {
     return a.truth.back().time < b.truth.back().time;
   });
+}
+
+/// @throws InputError unless every robot's truth is known at the start.
+void require_truth(const PreparedScenario& prepared) {
+  for (const mrclam::Robot& robot : prepared.log->robots) {
+    if (mrclam::pose_at(robot.truth, Time())) continue;
+    throw InputError(
+        prepared.scenario.file, 0,
+        "world.log.subjects = \"robots\" believes in robots from the start on, but the "
+        "truth of robot " +
+            std::to_string(robot.subject) + " is not known then");
+  }
 }
 
 void set_end(PreparedScenario& prepared) {
@@ -39,6 +53,7 @@ void set_end(PreparedScenario& prepared) {
     if (!prepared.scenario.duration_s) prepared.end = span;
     return;
   }
+  require_truth(prepared);
   const mrclam::Robot& first = first_to_end(*prepared.log);
   if (!prepared.scenario.duration_s) prepared.end = std::min(span, first.truth.back().time);
   if (prepared.end <= first.truth.back().time) return;
@@ -59,8 +74,9 @@ std::vector<double> states_of(const mrclam::Robot& robot, Duration period, Time 
   for (Time time; time <= end; time = time + period) {
     const mrclam::PoseSample here = at(time), before = at(time - 500_ms), after = at(time + 500_ms);
     const double span_s = (after.time - before.time).seconds();
-    states.insert(states.end(), {here.x_m, here.y_m, (after.x_m - before.x_m) / span_s,
-                                 (after.y_m - before.y_m) / span_s});
+    const double per_s = span_s > 0.0 ? 1.0 / span_s : 0.0;  // 0: the truth is a single instant
+    states.insert(states.end(), {here.x_m, here.y_m, (after.x_m - before.x_m) * per_s,
+                                 (after.y_m - before.y_m) * per_s});
   }
   return states;
 }
@@ -83,6 +99,10 @@ void add_landmarks(PreparedScenario& prepared) {
 
 void add_robots(PreparedScenario& prepared) {
   const Duration period = Duration::seconds(prepared.scenario.world.step_s.value());
+  if (prepared.end.seconds() / period.seconds() > steps_max) {
+    throw InputError(prepared.scenario.file, 0,
+                     "world.step_s: the run would have more than 1000000 steps");
+  }
   for (const mrclam::Robot& robot : prepared.log->robots) {
     prepared.subjects.push_back(
         {"robot" + std::to_string(robot.subject), states_of(robot, period, prepared.end)});

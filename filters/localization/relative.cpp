@@ -1,6 +1,7 @@
 #include "filters/localization/relative.hpp"
 
 #include <Eigen/Cholesky>
+#include <optional>
 
 #include "sim/math/functions.hpp"
 

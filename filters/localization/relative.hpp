@@ -22,7 +22,7 @@ Place place_of(const Pose& pose, const Eigen::Matrix3d& covariance, const Relati
 /// What one robot makes of what another said.
 enum class Taken {
   fused,
-  skipped,       ///< the rule could not use it
+  skipped,       ///< the rule could not use it, or gave it no weight
   outside_gate,  ///< less likely than the gate permits
 };
 

@@ -128,6 +128,7 @@ std::vector<OdometrySample> load_odometry(const std::string& file, std::int64_t 
     if (!odometry.empty() && odometry.back().time == time) odometry.pop_back();
     odometry.push_back({time, table.number(1), table.number(2)});
   }
+  if (odometry.empty()) throw InputError(file, 0, "no velocities");
   return odometry;
 }
 

@@ -3,8 +3,9 @@
 //
 // A directory with Barcodes.dat (subject barcode), Landmark_Groundtruth.dat (subject x y σx σy) and
 // for each robot Robot<i>_Groundtruth.dat (t x y heading) and Robot<i>_Measurement.dat (t barcode
-// range bearing). Robots are subjects 1 … 5, landmarks 6 and up. Lines that start with # are
-// comments; the last line, too, ends with a line end, or the file counts as cut off.
+// range bearing), and, where it is asked for, Robot<i>_Odometry.dat (t forward turn). Robots are
+// subjects 1 … 5, landmarks 6 and up. Lines that start with # are comments; the last line, too,
+// ends with a line end, or the file counts as cut off.
 #pragma once
 
 #include <cstdint>
@@ -90,8 +91,8 @@ enum class Odometry { skip, read };
 /// @throws InputError with file and line: directory or file missing, `robots` outside 1 … 5, a line
 /// with too few or too many fields or text that is no number, a number that is not finite or beyond
 /// ±1e6 (times: beyond 0 … 9e9 s), time going backwards, a barcode or subject listed twice, a
-/// subject without landmark position, a landmark without barcode, a truth file without poses, no
-/// measurement at all, a last line that is cut off.
+/// subject without landmark position, a landmark without barcode, a truth file without poses, one
+/// of odometry without velocities, no measurement at all, a last line that is cut off.
 Dataset load(const std::string& directory, int robots, Duration truth_gap_max,
              Odometry odometry = Odometry::skip);
 

@@ -1,7 +1,13 @@
 // A fleet that talks allocates nothing a packet once it is warm.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <memory>
+#include <vector>
+
 #include "agents/estimator_agent.hpp"
+#include "agents/localizer_agent.hpp"
+#include "sim/math/functions.hpp"
 #include "tools/memory/memory.hpp"
 
 namespace hearsay {
@@ -56,6 +62,63 @@ TEST(Allocation, WithLedgerAFleetAllocatesNothingWhileNoMeasurementIsNew) {
   for (const Rule rule : {Rule::naive, Rule::channel, Rule::channel_robust, Rule::ci_det}) {
     EXPECT_EQ(allocations_of(rule, true, false), 0u) << gaussian::info(rule).name;
   }
+}
+
+/// Between 60 s and 119 s of two robots that see a landmark and each other, and talk every second.
+std::size_t allocations_of_localizers(gaussian::Rule rule) {
+  Simulation simulation({.seed = 1, .end = Time::at(120_s), .record = {}});
+  Radio radio(simulation, Topology::full(2), {.latency = 10_ms, .loss = Loss::bernoulli(0.2)});
+  std::vector<Journey> journeys(2);
+  const Eigen::Vector2d landmark(2.0, 3.0);
+  PoseWitness::Options watched{.names = {"a", "b"}, .series_period = 1000_s};
+  for (int robot = 0; robot < 2; ++robot) {
+    Journey& journey = journeys[static_cast<std::size_t>(robot)];
+    journey.start = {4.0 * robot, 0.0, math::pi * robot};
+    for (int k = 1; k < 1200; ++k) {
+      journey.drives.push_back({Time() + 100_ms * k, k % 4 < 2 ? 0.1 : -0.1, 0.0});
+      journey.encounters.push_back({Time() + 100_ms * k, k % 2 == 0, k % 2 == 0 ? 1 - robot : 0,
+                                    k % 2 == 0 ? 4.0 : std::hypot(2.0, 3.0),
+                                    k % 2 == 0 ? 0.0 : std::atan2(3.0, 2.0) * (1 - 2 * robot)});
+    }
+    watched.central.start.push_back(journey.start);
+  }
+  watched.journeys = journeys;
+  PoseWitness witness(simulation, watched);
+  std::vector<std::unique_ptr<Context>> contexts;
+  std::vector<std::unique_ptr<LocalizerAgent>> agents;
+  for (AgentId id = 0; id < 2; ++id) {
+    contexts.push_back(std::make_unique<Context>(
+        simulation, radio,
+        Context::Identity{.id = id, .name = "robot", .kind = "localizer", .parameters = {}}));
+    const Journey& journey = journeys[static_cast<std::size_t>(id)];
+    agents.push_back(std::make_unique<LocalizerAgent>(
+        *contexts.back(), witness,
+        LocalizerAgent::Options{.filter = {.start = {journey.start}},
+                                .drives = journey.drives,
+                                .encounters = journey.encounters,
+                                .landmarks = std::span(&landmark, 1),
+                                .memory = 20_s,
+                                .rule = rule,
+                                .talk = PeriodicTalk{.period = 1_s, .phase = 100_ms * id}}));
+    radio.attach(id, *agents.back());
+  }
+  for (const auto& agent : agents) agent->start();
+  std::size_t before = 0, after = 0;
+  simulation.schedule(Time::at(60_s), Phase::observe, [&] { before = allocations(); });
+  simulation.schedule(Time::at(119_s), Phase::observe, [&] { after = allocations(); });
+  EXPECT_TRUE(simulation.run().ok());
+  for (const auto& agent : agents) agent->finish();
+  for (const ScalarRow& row : simulation.record().scalars()) {
+    if (simulation.record().text(row.name) == "fusions") {
+      EXPECT_GT(row.value, 300.0);
+    }
+  }
+  return after - before;
+}
+
+TEST(Allocation, LocalizersAllocateNothingOnceTheyAreWarm) {
+  EXPECT_EQ(allocations_of_localizers(gaussian::Rule::naive), 0u);
+  EXPECT_EQ(allocations_of_localizers(gaussian::Rule::ci_half), 0u);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -202,6 +203,60 @@ TEST(Movement, APathWithAGapEndsTheRunInItsAgentsName) {
   EXPECT_FALSE(end.ok());
   EXPECT_EQ(end.message,
             "agent 1 failed at 1.000000000 s: the legs of a path do not follow each other");
+}
+
+TEST(Movement, WhoIsSteeredLeavesItsPathAndStaysWhereTheLegEnds) {
+  Simulation simulation({.end = at_s(100)});
+  Motions motions(2, wanderers(20.0));
+  Path path(wanderers(20.0)(1));
+  Places places(2, 100.0, 50.0);
+  Movement movement(simulation, places, motions);
+  Point turned{};
+  const auto expect_at = [&](double t_s, AgentId agent, const auto& place) {
+    simulation.schedule(at_s(t_s), Phase::observe, [&, agent, place] {
+      const Point expected = place();
+      const Point found = places.at(agent, simulation.now());
+      EXPECT_LT(squared_distance_m2(found, expected), 1e-18);
+      const auto seen = places.around(expected, 1.0, simulation.now());
+      EXPECT_TRUE(std::any_of(seen.begin(), seen.end(),
+                              [&](const Nearby& near) { return near.agent == agent; }));
+    });
+  };
+  simulation.schedule(at_s(20.5), Phase::act, [&] {
+    turned = places.at(0, simulation.now());
+    const Point to = {turned[0] + 30.0, turned[1] - 40.0, turned[2]};
+    movement.steer(0, motion::leg_to(simulation.now(), turned, to, 5.0));
+  });
+  expect_at(25.5, 0, [&] { return Point{turned[0] + 15.0, turned[1] - 20.0, turned[2]}; });
+  expect_at(31.0, 0, [&] { return Point{turned[0] + 30.0, turned[1] - 40.0, turned[2]}; });
+  expect_at(60.0, 0, [&] { return Point{turned[0] + 30.0, turned[1] - 40.0, turned[2]}; });
+  simulation.schedule(at_s(70), Phase::act, [&] {  // on again, and stopped half-way
+    const Point here = places.at(0, simulation.now());
+    movement.steer(0, motion::leg_to(simulation.now(), here, turned, 10.0));
+  });
+  simulation.schedule(at_s(72.5), Phase::act, [&] {
+    movement.steer(0, {.begin = simulation.now(), .from_m = places.at(0, simulation.now())});
+  });
+  expect_at(99.0, 0, [&] { return Point{turned[0] + 15.0, turned[1] - 20.0, turned[2]}; });
+  expect_at(99.5, 1, [&] { return path.at(at_s(99.5)); });  // nobody steered the other
+  const RunEnd end = simulation.run();
+  EXPECT_TRUE(end.ok()) << end.message;
+}
+
+TEST(Movement, NobodyIsSteeredFromWhereItIsNot) {
+  Simulation simulation({.end = at_s(10)});
+  Motions motions(1, wanderers(20.0));
+  Places places(1, 100.0, 50.0);
+  Movement movement(simulation, places, motions);
+  const Point here = places.at(0, Time());
+  const Point beside = {here[0] + 0.01, here[1], here[2]};
+  EXPECT_THROW(movement.steer(0, {.begin = Time(), .from_m = beside}), BrokenInvariant);
+  EXPECT_THROW(movement.steer(0, {.begin = at_s(1), .from_m = here}), BrokenInvariant);
+  EXPECT_THROW(movement.steer(0, {.begin = Time(), .end = Time(), .from_m = here}),
+               BrokenInvariant);
+  EXPECT_THROW(motion::leg_to(Time(), here, beside, 0.0), BrokenInvariant);
+  EXPECT_THROW(motion::leg_to(Time(), here, here, 1.0), BrokenInvariant);
+  EXPECT_THROW(motion::leg_to(Time(), here, {1e13, 0.0, 0.0}, 1.0), BrokenInvariant);
 }
 
 TEST(Movement, NothingIsAllocatedInSteadyState) {

@@ -1,6 +1,8 @@
 // Whole runs whose agents move: who hears whom follows from where they are.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <map>
 #include <string>
 
@@ -66,6 +68,71 @@ jammers = [{ position_m = [0, 200], radius_m = 210 }]
   // so all the time. What is sent at 100 s is still on the air at the end.
   EXPECT_EQ(sums.at("jammed"), 100u + 13u);
   EXPECT_EQ(sums.at("delivered"), 100u - 13u);
+}
+
+/// Walks a square of 100 m at 10 m/s, then stops for good; says when it turns.
+class Walker final : public Agent {
+ public:
+  explicit Walker(Context& own) : Agent(own) {}
+  void start() override {
+    if (context().steered()) spawn(walk());
+  }
+  void finish() override {
+    context().record_final("x", context().position()[0]);
+    context().record_final("y", context().position()[1]);
+    context().record_final("turned_s", turned_s_);
+  }
+
+ private:
+  Process walk() {
+    for (const std::array<double, 2>& corner :
+         {std::array{100.0, 0.0}, {100.0, 100.0}, {0.0, 100.0}, {0.0, 0.0}}) {
+      co_await context().sleep_until(context().go_to(corner, 10.0));
+    }
+    turned_s_ = context().now().seconds();
+    context().go_to({500.0, 0.0}, 10.0);
+    co_await context().sleep(2500_ms);
+    context().stay();
+  }
+  double turned_s_ = 0.0;
+};
+
+TEST_F(MovingRun, AnAgentGoesWhereItDecides) {
+  write("s.toml",
+        "duration_s = 60\n[radio]\ntopology = \"disk\"\nrange_m = 50\n[[agents]]\nkind "
+        "= \"walker\"\nposition_m = [0, 0]\nmotion = { kind = \"steered\" }\n"
+        "[[agents]]\nkind = \"walker\"\nposition_m = [7, 8]\n");
+  Catalog catalog;
+  catalog.add_agent<Walker>("walker", "walks a square");
+  LogCache logs;
+  hearsay::Run run(prepare(load_scenario("s.toml", {}, known_names(catalog)), catalog, logs),
+                   catalog, {.seed = 1});
+  const RunEnd end = run.run();
+  ASSERT_TRUE(end.ok()) << end.message;
+  std::map<std::string, double> values;
+  for (const ScalarRow& row : run.record().scalars()) {
+    if (row.agent == 0) values[std::string(run.record().text(row.name))] = row.value;
+  }
+  EXPECT_EQ(values.at("turned_s"), 40.0);
+  EXPECT_NEAR(values.at("x"), 25.0, 1e-9);
+  EXPECT_NEAR(values.at("y"), 0.0, 1e-9);
+}
+
+TEST_F(MovingRun, WhoIsNotSteeredCannotGoAnywhere) {
+  class Stubborn final : public Agent {
+   public:
+    explicit Stubborn(Context& own) : Agent(own) {}
+    void start() override { context().go_to({1.0, 0.0}, 1.0); }
+  };
+  write("s.toml",
+        "duration_s = 1\n[[agents]]\nkind = \"stubborn\"\nposition_m = [0, 0]\n"
+        "motion = { kind = \"hover\" }\n");
+  Catalog catalog;
+  catalog.add_agent<Stubborn>("stubborn", "goes where it must not");
+  LogCache logs;
+  hearsay::Run run(prepare(load_scenario("s.toml", {}, known_names(catalog)), catalog, logs),
+                   catalog, {.seed = 1});
+  EXPECT_THAT(run.run().message, testing::HasSubstr("that is not steered cannot go anywhere"));
 }
 
 }  // namespace

@@ -22,12 +22,7 @@ class MrclamErrors : public SmallDataset {
     try {
       load(directory_, robots, 10_s);
     } catch (const InputError& error) {
-      std::string text = error.what();
-      for (auto at = text.find(directory_ + "/"); at != std::string::npos;
-           at = text.find(directory_ + "/")) {
-        text.erase(at, directory_.size() + 1);
-      }
-      return text;
+      return without_directory(error.what());
     }
     return "no error";
   }
@@ -71,6 +66,30 @@ TEST_F(MrclamErrors, EachMissingFileIsNamed) {
 TEST_F(MrclamErrors, MoreOrFewerRobotsThanADataSetCanHaveAreRefused) {
   EXPECT_EQ(message(6), directory_ + ": 6 robots asked for; the data set has 1 … 5");
   EXPECT_EQ(message(0), directory_ + ": 0 robots asked for; the data set has 1 … 5");
+}
+
+TEST_F(MrclamErrors, OfOdometryThatIsAskedForTheSameIsNamed) {
+  write("Robot2_Odometry.dat", "12 0 0\n");
+  const auto message_of = [&](const char* content) {
+    write("Robot1_Odometry.dat", content);
+    try {
+      load(directory_, 2, 10_s, Odometry::read);
+    } catch (const InputError& error) {
+      return without_directory(error.what());
+    }
+    return std::string("no error");
+  };
+  EXPECT_EQ(message_of("12 0.1 0\n"), "no error");
+  EXPECT_EQ(message_of("# t v w\n"), "Robot1_Odometry.dat: no velocities");
+  EXPECT_EQ(message_of("12 0.1\n"),
+            "Robot1_Odometry.dat:1: 2 fields; a line holds 3: time, forward velocity, angular "
+            "velocity");
+  EXPECT_EQ(message_of("12 0.1 fast\n"), "Robot1_Odometry.dat:1: \"fast\" is no number");
+  EXPECT_EQ(message_of("12 0.1 0\n11 0.1 0\n").substr(0, 22), "Robot1_Odometry.dat:2:");
+  EXPECT_EQ(message_of("12 0.1 0"),
+            "Robot1_Odometry.dat:1: the file is cut off: its last line has no line end");
+  remove("Robot1_Odometry.dat");
+  EXPECT_THROW(load(directory_, 2, 10_s, Odometry::read), InputError);
 }
 
 TEST_F(MrclamErrors, ALineWithTooFewOrTooManyFieldsIsNamed) {

@@ -37,6 +37,14 @@ class SmallDataset : public testing::Test {
     std::ofstream(path(name), std::ios::binary) << content;
   }
   void remove(const std::string& name) const { std::filesystem::remove(path(name)); }
+  /// A message with the names of files alone.
+  std::string without_directory(std::string text) const {
+    const std::string prefix = directory_ + "/";
+    for (auto at = text.find(prefix); at != std::string::npos; at = text.find(prefix)) {
+      text.erase(at, prefix.size());
+    }
+    return text;
+  }
   std::string path(const std::string& name) const { return directory_ + "/" + name; }
 
   std::string directory_;

@@ -192,13 +192,15 @@ void EstimatorAgent::finish() {
   Record& record = context().simulation().record();
   record.scalar(context().id(), record.name("nis_mean"),
                 nis_sum_ / static_cast<double>(nis_count_));
-  double alone_m = 0.0, error_m = 0.0;
+  double saved_m = 0.0;
+  int seen = 0;
   for (int s = 0; s < options_.subjects; ++s) {
-    alone_m += witness_.distance_error_m(s, alone_.at(s, stamp()));
-    error_m += witness_.distance_error_m(s, estimator_->tracked(s).belief);
+    const double alone_m = witness_.distance_error_m(s, alone_.at(s, stamp()));
+    if (std::isnan(alone_m)) continue;
+    saved_m += alone_m - witness_.distance_error_m(s, estimator_->tracked(s).belief);
+    ++seen;
   }
-  record.scalar(context().id(), record.name("distance_saved_m"),
-                (alone_m - error_m) / options_.subjects);
+  record.scalar(context().id(), record.name("distance_saved_m"), saved_m / seen);
   LookSums sums;
   bool any = false;
   for (const Sensor& sensor : options_.sensors) {

@@ -68,9 +68,10 @@ constexpr std::array kMetrics = {
                "none where nothing is saved"},
     MetricInfo{"distance_error_m", kScalar, kMean, false,
                "distance of estimate and truth at the end, mean over subjects, m"},
-    MetricInfo{"distance_saved_m", kScalar, kMean, false,
-               "by how much nearer to the truth the agent ends than it would from its own "
-               "measurements alone (rule none, same run), m; none if it never saw a subject"},
+    MetricInfo{
+        "distance_saved_m", kScalar, kMean, false,
+        "by how much nearer to the truth the agent ends than it would from its own "
+        "measurements alone (rule none, same run), mean over the subjects that it saw itself, m"},
     MetricInfo{"nis_mean", kScalar, kMean, false,
                "vᵀ(MΣMᵀ + S)⁻¹v / m of a measurement against the agent's belief just before, mean "
                "over its measurements, 1 if consistent; not where that belief was singular, nor of "
@@ -201,7 +202,8 @@ constexpr std::array kMetrics = {
     MetricInfo{"log_skipped_robot_sighting", kScalar, kMean, false,
                "log lines not used: another robot was seen"},
     MetricInfo{"log_skipped_landmark_sighting", kScalar, kMean, false,
-               "log lines not used: a landmark was seen, but robots are believed in"},
+               "log lines not used: a landmark was seen, but robots are believed in, or it is "
+               "unknown"},
     MetricInfo{"log_skipped_bad_range", kScalar, kMean, false,
                "log lines skipped: range not positive"},
     MetricInfo{"state_dimension", kScalar, kMean, false, "n, of agent −1"},

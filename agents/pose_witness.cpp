@@ -63,12 +63,14 @@ std::optional<localization::Pose> PoseWitness::truth(std::size_t robot) const {
 }
 
 void PoseWitness::sample() {
+  central_sums_.begin_sample();
   for (std::size_t robot = 0; robot < odometers_.size(); ++robot) {
     advance(robot);
     const auto i = static_cast<int>(robot);
     sample(central_agent, robot, central_.pose(i), central_.covariance(i), central_sums_);
   }
   for (Watched& watched : watched_) {
+    watched.sums.begin_sample();
     const localization::PoseFilter& own = watched.present();
     sample(watched.agent, static_cast<std::size_t>(watched.agent), own.pose(0), own.covariance(0),
            watched.sums);
@@ -98,6 +100,9 @@ void PoseWitness::sample(AgentId agent, std::size_t robot, const localization::P
   keep(Metric::y_m, pose.y_m);
   keep(Metric::x_error_m, error.x());
   keep(Metric::y_error_m, error.y());
+  ++sums.last;
+  sums.last_distance_m += error.head<2>().norm();
+  sums.last_variance_m2 += 0.5 * covariance.topLeftCorner<2, 2>().trace();
   ++sums.samples;
   sums.distance_m += error.head<2>().norm();
   sums.heading_rad2 += error.z() * error.z();
@@ -109,6 +114,8 @@ void PoseWitness::leave(AgentId agent, const Sums& sums) {
   const auto scalar = [&](const char* name, double value) {
     record.scalar(agent, record.name(name), value);
   };
+  scalar("distance_error_m", sums.last_distance_m / sums.last);
+  scalar("final_claimed_sigma_m", std::sqrt(sums.last_variance_m2 / sums.last));
   const double n = sums.samples;
   scalar("position_error_mean_m", sums.distance_m / n);
   scalar("heading_error_rms_rad", std::sqrt(sums.heading_rad2 / n));

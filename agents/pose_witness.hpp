@@ -41,10 +41,13 @@ class PoseWitness {
   void finish();
 
  private:
-  /// Sums over samples.
+  /// Sums over samples, and over the robots of the last one.
   struct Sums {
     int samples = 0;
     double distance_m = 0.0, heading_rad2 = 0.0, nees = 0.0;
+    int last = 0;
+    double last_distance_m = 0.0, last_variance_m2 = 0.0;
+    void begin_sample() { last = 0, last_distance_m = last_variance_m2 = 0.0; }
   };
   struct Watched {
     AgentId agent;

@@ -7,6 +7,23 @@ namespace hearsay {
 namespace {
 
 constexpr double memory_max_s = 3600.0;
+constexpr double sigma_min = 1e-6;  // of a measurement, in m or rad
+
+// A pose that is known badly is what the filter itself finds out.
+void check_noise(const ScenarioUnderCheck& file, const SensorSpec& sensor, const KeyPath& path) {
+  const SensorSpec plain;
+  const auto useless = [&](const char* key, double value, double otherwise) {
+    if (value == otherwise) return;
+    file.fail(path[key], "without effect: a localizer finds out itself how well it knows its pose");
+  };
+  useless("sigma_heading_rad", sensor.sigma_heading_rad, plain.sigma_heading_rad);
+  useless("sigma_position_m", sensor.sigma_position_m, plain.sigma_position_m);
+  const auto too_sure = [&](const char* key, double value) {
+    if (value < sigma_min) file.fail(path[key], "must be at least 1e-06 for a localizer");
+  };
+  too_sure("sigma_range_m", sensor.sigma_range_m);
+  too_sure("sigma_bearing_rad", sensor.sigma_bearing_rad);
+}
 
 void check_localizer(const ScenarioUnderCheck& file, const AgentSpec& agent, const KeyPath& path) {
   const KeyPath sensor = path["sensor"];
@@ -40,6 +57,7 @@ void check_localizer(const ScenarioUnderCheck& file, const AgentSpec& agent, con
     file.fail(talk["content"],
               "kind \"localizer\" says whole beliefs; found \"" + agent.talk.content + "\"");
   }
+  check_noise(file, agent.sensor, sensor);
   if (agent.localizer.memory_s > memory_max_s) {
     file.fail(localizer["memory_s"], "more than an hour (3600 s) is not kept");
   }

@@ -9,7 +9,7 @@ namespace hearsay {
 struct LocalizerSpec {
   std::string fusion = "none";  ///< a name of gaussian::rules() that weighs and needs no memory
   std::optional<int> landmarks_known;    ///< the first of the log, 0 … 1e6; none: all
-  double start_sigma_m = 0.05;           ///< an axis, > 0
+  double start_sigma_m = 0.05;           ///< an axis, 1e-6 … 1e6
   double start_sigma_rad = 0.02;         ///< > 0
   double forward_m_per_sqrt_s = 0.02;    ///< noise of the odometry, ≥ 0
   double sideways_m_per_sqrt_s = 0.005;  ///< ≥ 0

@@ -7,6 +7,8 @@
 namespace hearsay {
 namespace {
 
+constexpr std::int64_t samples_max = 1'000'000;
+
 localization::Pose pose_of(const mrclam::PoseSample& sample) {
   return {sample.x_m, sample.y_m, sample.heading_rad};
 }
@@ -45,6 +47,9 @@ bool has_localizers(const Scenario& scenario) {
 
 std::vector<Journey> journeys_of(const mrclam::Dataset& log, Duration period, Time end,
                                  const std::string& file) {
+  if (end.since_start() / period > samples_max) {
+    throw InputError(file, 0, "record.series_period_s: more than 1000000 samples are not taken");
+  }
   std::vector<Journey> journeys;
   for (const mrclam::Robot& robot : log.robots) {
     Journey journey;

@@ -28,6 +28,15 @@ gaussian::Belief information_of(const mrclam::PoseSample& pose, double range_m, 
 
 constexpr double steps_max = 1e6;  // of a run
 
+/// Sightings of landmarks that nobody believes in, or that the robot does not know.
+std::size_t unused_landmarks(const mrclam::Robot& robot, const AgentSpec& spec, bool robots) {
+  if (spec.kind != "localizer") return robots ? robot.sightings.size() : 0;
+  const auto& known = spec.localizer.landmarks_known;
+  return static_cast<std::size_t>(
+      std::count_if(robot.sightings.begin(), robot.sightings.end(),
+                    [&](const auto& seen) { return known && seen.landmark >= *known; }));
+}
+
 /// When the truth of the first robot ends, and whose that is.
 const mrclam::Robot& first_to_end(const mrclam::Dataset& log) {
   return *std::min_element(log.robots.begin(), log.robots.end(), [](const auto& a, const auto& b) {
@@ -180,7 +189,7 @@ void record_log(const PreparedScenario& prepared, Record& record) {
     leave("log_skipped_unknown_barcode", robot.skips.unknown_barcode);
     leave("log_skipped_robot_sighting",
           robot.skips.robot_sighting + (robots || both ? 0 : robot.companions.size()));
-    leave("log_skipped_landmark_sighting", robots && !both ? robot.sightings.size() : 0);
+    leave("log_skipped_landmark_sighting", unused_landmarks(robot, *prepared.specs[i], robots));
     leave("log_skipped_bad_range", robot.skips.bad_range);
   }
 }

@@ -303,8 +303,12 @@ std::vector<KeyInfo> parameters(const RadioModelInfo& model) {
 }
 
 std::string unit_of(std::string_view key) {
-  constexpr std::array<std::pair<std::string_view, const char*>, 11> units = {
+  constexpr std::array<std::pair<std::string_view, const char*>, 15> units = {
       {{"_m_per_s", "m/s"},
+       {"_m_per_sqrt_s", "m/√s"},
+       {"_rad_per_sqrt_s", "rad/√s"},
+       {"_m2_per_s3", "m²/s³"},
+       {"_nats", "nats"},
        {"_bps", "bit/s"},
        {"_bytes", "bytes"},
        {"_bytes_max", "bytes"},

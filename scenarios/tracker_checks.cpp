@@ -9,6 +9,7 @@ namespace hearsay {
 namespace {
 
 constexpr double false_alarms_max = 1000.0;  // in a scan, on average
+constexpr double trail_scans_max = 1e4;
 
 class TrackerChecker {
  public:
@@ -89,6 +90,9 @@ void TrackerChecker::check_tracker(const AgentSpec& agent, const KeyPath& path) 
   if (agent.tracker.trail_s && !agent.tracker.acceleration_psd_m2_per_s3) {
     file_.fail(tracker["trail_s"],
                "needs acceleration_psd_m2_per_s3: trails are of targets that move");
+  }
+  if (agent.tracker.trail_s.value_or(0.0) / agent.sensor.period_s > trail_scans_max) {
+    file_.fail(tracker["trail_s"], "more than 10000 scans (sensor.period_s) are not kept");
   }
   check_motion(agent, path);
 }

@@ -6,8 +6,12 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "agents/estimators/gaussian.hpp"
+#include "agents/estimators/shared_trajectories.hpp"
 #include "agents/metrics.hpp"
 #include "filters/gaussian/fusion.hpp"
+#include "scenarios/describe_localizer.hpp"
+#include "scenarios/describe_tracker.hpp"
 #include "scenarios/radio_models.hpp"
 #include "scenarios/schema.hpp"
 #include "tools/hearsay/share.hpp"
@@ -40,10 +44,31 @@ const char* text_of(gaussian::Sends sends) {
   return "";
 }
 
+/// The kinds of estimator and agent that can fuse by a rule.
+std::string goes_with(const gaussian::RuleInfo& rule) {
+  const auto among = [&](const auto& names) {
+    return std::find(names.begin(), names.end(), rule.name) != names.end();
+  };
+  std::string text = "static-gaussian";
+  if (rule.memory != gaussian::Memory::held &&
+      message_form(rule.rule, Content::belief) == gaussian::MessageForm::plain) {
+    text += ", moving-gaussian";
+  }
+  const auto of_trajectories = trajectory_rules();
+  if (std::find(of_trajectories.begin(), of_trajectories.end(), rule.rule) !=
+      of_trajectories.end()) {
+    text += ", trajectory-gaussian";
+  }
+  if (among(tracker_fusion_names())) text += ", tracker";
+  if (among(localizer_fusion_names())) text += ", localizer";
+  return text;
+}
+
 Json rules() {
   Json out = Json::array();
   for (const gaussian::RuleInfo& rule : gaussian::rules()) {
     out.push_back({{"name", rule.name},
+                   {"goes with", goes_with(rule)},
                    {"sends", text_of(rule.sends)},
                    {"assumes", rule.assumes},
                    {"conservative", rule.conservative},

@@ -117,6 +117,7 @@ class Verbs(Bed):
                                  "consensus-information", "hybrid-consensus"])
         for rule in rules:
             self.assertTrue(rule["sends"] and rule["assumes"] and rule["conservative"] and rule["source"])
+            self.assertIn("static-gaussian", rule["goes with"])
             self.assertTrue(rule["cost"])
         self.assertIn("rumour/rumour.study.toml", self.good("list", "scenarios"))
         radios = self.good("list", "radios")

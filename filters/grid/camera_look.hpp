@@ -59,7 +59,9 @@ struct PixelEllipse {
 };
 
 /// The share of marked pixels in the ellipse d² ≤ 9, by their weight exp(−d²/2); pixels outside the
-/// image are left out. Nothing if there is none inside, or Σ is not positive definite.
+/// image are left out. Nothing if there is none inside, or if Σ is less than half a pixel wide in
+/// some direction or not finite. Costs as much as there are pixels in the ellipse, and next to
+/// nothing where no mark is near.
 std::optional<double> marked_share(const SegmentedImage& image, const PixelEllipse& ellipse);
 
 struct GridCamera {
@@ -99,10 +101,10 @@ class CameraLook {
   void judge(const SegmentedImage& image, std::vector<CellLook>& out) const;
 
  private:
-  /// A sigma point: the camera and the cell's centre are shifted.
+  /// A sigma point, camera and cell shifted: s·(u, v, 1) = H·(x, y, 1) for a cell's centre on the
+  /// plane.
   struct Sample {
-    gaussian::CameraPose pose;
-    double dx_m, dy_m;
+    gaussian::Matrix3 homography;
     double weight;
   };
   static constexpr int dimension = 8;

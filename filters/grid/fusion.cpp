@@ -17,7 +17,7 @@ struct Limits {
   }
 };
 
-/// own[i] = limits(f(own[i], received[i], common[i])). Plain loops, which compilers vectorise.
+/// own[i] = limits(f(own[i], received[i])). Plain loops, which compilers vectorise.
 template <typename F>
 void each(std::span<float> own, std::span<const float> received, const Limits& limits, F f) {
   float* const o = own.data();
@@ -106,60 +106,54 @@ std::span<float> range(Rule rule, Grid& own, const Heard& heard, double omega) {
   return all.subspan(first, size);
 }
 
+/// The rules that treat each number alike, whatever it is. False if `rule` is none of them.
+bool fuse_numbers(Rule rule, std::span<float> own, const Heard& heard, const Limits& limits,
+                  double omega) {
+  switch (rule) {
+    case Rule::none:
+      return true;
+    case Rule::naive:
+      add(own, heard, limits);
+      return true;
+    case Rule::channel:
+    case Rule::channel_robust:
+      add_less_common(own, heard, limits);
+      return true;
+    case Rule::maximum:
+    case Rule::elementwise_maximum:
+      larger(own, heard, limits);
+      return true;
+    case Rule::geometric_mean:
+    case Rule::averaged_parameters:
+      weighted(own, heard, limits, omega);
+      return true;
+    case Rule::strongest:
+    case Rule::dictatorship:
+    case Rule::linear_pool:
+      break;
+  }
+  return false;
+}
+
 }  // namespace
 
 void fuse(Rule rule, BernoulliGrid& own, const Heard& heard, double omega) {
+  require(info(rule).bernoulli, "fuse: a rule that is not for Bernoulli grids");
   const std::span<float> cells = range(rule, own, heard, omega);
   const Limits limits{own.least(), own.greatest()};
-  switch (rule) {
-    case Rule::none:
-      return;
-    case Rule::naive:
-      return add(cells, heard, limits);
-    case Rule::channel:
-    case Rule::channel_robust:
-      return add_less_common(cells, heard, limits);
-    case Rule::maximum:
-      return larger(cells, heard, limits);
-    case Rule::strongest:
-      return farther(cells, heard, limits, 0.0);
-    case Rule::dictatorship:
-      return farther(cells, heard, limits, own.prior_log_odds());
-    case Rule::geometric_mean:
-      return weighted(cells, heard, limits, omega);
-    case Rule::linear_pool:
-      return pool_linearly(cells, heard, limits, own.prior_log_odds(), omega);
-    case Rule::elementwise_maximum:
-    case Rule::averaged_parameters:
-      break;
+  if (fuse_numbers(rule, cells, heard, limits, omega)) return;
+  if (rule == Rule::linear_pool) {
+    pool_linearly(cells, heard, limits, own.prior_log_odds(), omega);
+  } else {
+    farther(cells, heard, limits, rule == Rule::dictatorship ? own.prior_log_odds() : 0.0);
   }
-  broken("fuse: a rule that is not for Bernoulli grids");
 }
 
 void fuse(Rule rule, BetaGrid& own, const Heard& heard, double omega) {
+  require(info(rule).beta, "fuse: a rule that is not for Beta grids");
   const std::span<float> cells = range(rule, own, heard, omega);
   const Limits limits{own.least(), own.greatest()};
-  switch (rule) {
-    case Rule::none:
-      return;
-    case Rule::naive:
-      return add(cells, heard, limits);
-    case Rule::channel:
-    case Rule::channel_robust:
-      return add_less_common(cells, heard, limits);
-    case Rule::dictatorship:
-      return dictate(cells, heard, limits, own.prior());
-    case Rule::elementwise_maximum:
-      return larger(cells, heard, limits);
-    case Rule::averaged_parameters:
-      return weighted(cells, heard, limits, omega);
-    case Rule::maximum:
-    case Rule::strongest:
-    case Rule::geometric_mean:
-    case Rule::linear_pool:
-      break;
-  }
-  broken("fuse: a rule that is not for Beta grids");
+  if (!fuse_numbers(rule, cells, heard, limits, omega)) dictate(cells, heard, limits, own.prior());
 }
 
 void less_heard(std::span<const float> own, std::span<const float> heard, std::span<float> out) {

@@ -129,10 +129,10 @@ TEST(MarkedShare, IsTheWeightedSumOverTheEllipse) {
   Stream random = stream("share");
   const SegmentedImage image = image_of([](int u, int v) { return (u / 5 + v / 3) % 3 == 0; });
   for (int trial = 0; trial < 300; ++trial) {
-    const double a = random.uniform(0.5, 12), b = random.uniform(0.5, 12);
-    const double r = random.uniform(-0.95, 0.95);
-    const PixelEllipse at{random.uniform(-5, 245), random.uniform(-5, 325), a * a, r * a * b,
-                          b * b};
+    const double a = random.uniform(0.0, 12), b = random.uniform(0.0, 12);
+    const double r = random.uniform(-1.0, 1.0);
+    const PixelEllipse at{random.uniform(-5, 245), random.uniform(-5, 325), a * a + 0.25, r * a * b,
+                          b * b + 0.25};
     const double determinant = at.uu * at.vv - at.uv * at.uv;
     double marked = 0.0, all = 0.0;
     for (int v = 0; v < 320; ++v) {
@@ -161,6 +161,8 @@ TEST(MarkedShare, OfAnImageThatIsAllOrNothing) {
   EXPECT_FALSE(marked_share(image_of([](int, int) { return true; }), {-50, 100, 30, 5, 20}));
   EXPECT_FALSE(marked_share(image_of([](int, int) { return true; }), {100, 100, 30, 30, 20}));
   EXPECT_FALSE(marked_share(image_of([](int, int) { return true; }), {100, 100, NAN, 0, 20}));
+  EXPECT_FALSE(marked_share(image_of([](int, int) { return true; }), {100, 100, 0.2, 0, 20}));
+  EXPECT_FALSE(marked_share(SegmentedImage(240, 320), {-9, -9, 12, 0, 12}));  // in the box alone
 }
 
 /// p(z|x) of eq. 4.7 by drawing poses, points in the cell and the blur of a pixel.

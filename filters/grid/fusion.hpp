@@ -78,14 +78,15 @@ struct Heard {
   int first_cell = 0;
   /// Evidence of the cells from the first on, `layers` finite numbers a cell.
   std::span<const float> received;
-  /// Of the same cells, for rules with a memory: what to take off. Else not looked at.
+  /// Of the same cells, for rules with a memory: what to take off, 0 as long as nothing was
+  /// exchanged. Else not looked at.
   std::span<const float> common = {};
 };
 
 /// Weighted rules: the weight of one's own belief.
 inline constexpr double usual_omega = 0.5;
 
-/// Fuses a range of cells into `own`; all of them by default. `omega`, in [0, 1], is looked at by
+/// Fuses a range of cells into `own`. `omega`, in [0, 1], is looked at by
 /// the three weighted rules alone. Nothing is allocated.
 /// @throws BrokenInvariant for a rule that is not for such a grid, a range that is not in it,
 /// `common` of another length where the rule needs it, a weight outside [0, 1].

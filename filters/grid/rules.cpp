@@ -18,8 +18,7 @@ constexpr std::array<RuleInfo, 11> table = {{
     {Rule::channel, "channel", true, true, Sends::evidence, Memory::last_exchanged, false, true,
      "a tree of reliable, ordered links on which beliefs never cross, and evidence within limits",
      "exact there; loops count twice; lost or crossing beliefs lose looks, of Beta down to "
-     "negative "
-     "counts",
+     "negative counts",
      "one addition and one subtraction a number", "Merino 2007, Alg. 4.3; Beta Alg. 4.5"},
     {Rule::channel_robust, "channel-robust", true, true, Sends::evidence_less_heard,
      Memory::last_heard, false, true,
@@ -43,8 +42,7 @@ constexpr std::array<RuleInfo, 11> table = {{
      "no look counts twice: a cell has the looks of one of both, those that leave the least "
      "entropy; of equal ones the alarm",
      "Bernoulli: two comparisons a cell; Beta: two entropies a cell (six lgamma, six digamma) "
-     "where "
-     "both differ",
+     "where both differ",
      "Merino 2007, section 4.1.3"},
     {Rule::geometric_mean, "geometric-mean", true, false, Sends::evidence, Memory::nothing, true,
      true, "nothing about what is shared",
@@ -54,7 +52,7 @@ constexpr std::array<RuleInfo, 11> table = {{
     {Rule::linear_pool, "linear-pool", true, false, Sends::evidence, Memory::nothing, true, true,
      "nothing about what is shared; one prior",
      "the probability is never outside of those of both; what agrees does not grow",
-     "two exponentials and two logarithms a cell where both differ",
+     "four exponentials and two logarithms a cell where both differ",
      "linear opinion pool: Stone, Annals of Mathematical Statistics 32, 1961"},
     {Rule::elementwise_maximum, "elementwise-maximum", false, true, Sends::evidence,
      Memory::nothing, true, true, "counts only grow",

@@ -12,6 +12,11 @@
 #include "filters/gaussian/fusion.hpp"
 #include "filters/gaussian/geolocation.hpp"
 #include "filters/gaussian/nonlinear.hpp"
+#include "filters/grid/camera_look.hpp"
+#include "filters/grid/codec.hpp"
+#include "filters/grid/fusion.hpp"
+#include "filters/grid/gain.hpp"
+#include "filters/grid/regions.hpp"
 #include "filters/ledger/ledger.hpp"
 #include "tests/filters/gaussian/samples.hpp"
 
@@ -169,6 +174,77 @@ TEST(Allocation, DoesNotHappenInAWarmLedger) {
               reach_gap(belief, own, book);
             }),
             0u);
+}
+
+template <typename Grid>
+void expect_no_allocation_in_fusion(Grid& own, bool grid::RuleInfo::*is_for) {
+  const std::vector<float> received(own.evidence().size(), 1.5F);
+  for (const grid::RuleInfo& row : grid::rules()) {
+    if (!(row.*is_for)) continue;
+    const grid::Heard heard{.received = received, .common = received};
+    EXPECT_EQ(allocations_of([&] { grid::fuse(row.rule, own, heard); }), 0u) << row.name;
+  }
+}
+
+TEST(Allocation, DoesNotHappenInFusionAndMessagesOfGrids) {
+  const grid::Area area({.columns = 40, .rows = 40});
+  grid::BernoulliGrid bernoulli(area);
+  grid::BetaGrid beta(area);
+  expect_no_allocation_in_fusion(bernoulli, &grid::RuleInfo::bernoulli);
+  expect_no_allocation_in_fusion(beta, &grid::RuleInfo::beta);
+  const std::vector<float> sent(1600, 0.0F);
+  std::vector<float> evidence = sent;
+  for (std::size_t i = 0; i < evidence.size(); i += 3) evidence[i] = 1.0F;
+  const grid::Shape shape{1600, 1};
+  grid::Encoder encoder;
+  for (const grid::Form form : {grid::Form::runs, grid::Form::changed, grid::Form::whole}) {
+    const grid::Encoder::Message message{1, 2, form, evidence, sent};
+    EXPECT_GT(encoder.encode(message, shape, 500).size(), 1u);
+    std::size_t packets = 0;
+    EXPECT_EQ(allocations_of([&] {
+                for (const std::vector<std::byte>& bytes : encoder.encode(message, shape, 500)) {
+                  grid::Packet::parse(bytes, shape)
+                      ->for_each_range([&](int first, std::span<const float> values) {
+                        grid::fuse(grid::Rule::naive, bernoulli, {first, values});
+                      });
+                  ++packets;
+                }
+              }),
+              0u);
+    EXPECT_GT(packets, 1u);
+  }
+}
+
+TEST(Allocation, DoesNotHappenInWarmLooksAtGrids) {
+  const grid::Area area({.columns = 40, .rows = 40, .x_m = -20.0, .y_m = -20.0});
+  grid::BernoulliGrid bernoulli(area);
+  grid::CameraLook look({.lens = infrared_camera,
+                         .width = 240,
+                         .height = 320,
+                         .detector = {0.9, 0.1},
+                         .range_max_m = 80.0},
+                        area);
+  grid::SegmentedImage image(240, 320);
+  image.mark(120, 160);
+  const CameraPose pose = looking({0, 0, 20}, 0.0, 1.4);
+  const Matrix covariance = look_covariance({0.3, 0.01, 0.0}).topLeftCorner(6, 6);
+  std::vector<grid::CellLook> looks;
+  std::vector<grid::CellInView> cells;
+  grid::RegionFinder finder;
+  double gain = 0.0;
+  const auto work = [&] {
+    look.look(pose, covariance);
+    look.judge(image, looks);
+    grid::add(looks, bernoulli);
+    gain += grid::expected_gain(bernoulli, look.in_view());
+    cells_in_view({{0.9, 0.1}, 40.0, 0.4}, pose, area, cells);
+    grid::presence_look(cells, true, looks);
+    grid::add(looks, bernoulli);
+    gain += static_cast<double>(finder.find(bernoulli, 0.5).size());
+  };
+  EXPECT_GT(allocations_of(work), 0u);
+  EXPECT_EQ(allocations_of(work), 0u);
+  EXPECT_GT(gain, 0.0);
 }
 
 }  // namespace

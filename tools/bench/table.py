@@ -21,10 +21,13 @@ GOALS = {
     "add/20": None, "add/100": None, "add/1000": None,
     "means/20": None, "means/100": None, "means/1000": None,
     "intersect/20": None, "intersect/100": None, "intersect/1000": None,
+    "fuse_grid/100": None, "fuse_grid/1000": 0.5, "fuse_grid_channel/1000": None,
+    "camera/400": None, "camera/6400": None, "camera/102400": None, "camera_grid/64": None, "camera_grid/4096": None,
     "log": 1.0,
 }
 # Measured against another workload's floor: what a time-out an event costs beside none at all.
-FLOOR_OF = {"intersect": "means", "timeouts": "hold", "moving": "beacon", "fading": "beacon", "sensing": "beacon"}
+FLOOR_OF = {"intersect": "means", "timeouts": "hold", "moving": "beacon", "fading": "beacon", "sensing": "beacon",
+            "fuse_grid_channel": "fuse_grid"}
 COUNTERS = {"bytes_per_process": "bytes a process", "bytes_per_agent": "bytes an agent", "bytes/row": "bytes a row"}
 RATES = ("items_per_second", "deliveries_per_s", "rows/s")
 
@@ -68,9 +71,9 @@ def main():
     compiler = subprocess.run(["g++", "--version"], capture_output=True, text=True).stdout.split("\n")[0]
     print("# Benchmarks\n")
     print(f"{processor()}, {compiler}, release build. Median of five interleaved repetitions, in millions "
-          "a second (events, wake-ups, deliveries, fusions, trajectories, rows) of CPU time (log: of wall time). The "
+          "a second (events, wake-ups, deliveries, fusions, trajectories, bytes of grids, cells in view, rows) of CPU time (log: of wall time). The "
           "ratio is ours to a floor in the same binary and run: plain arrays and std::priority_queue, "
-          "dynamic-size Eigen (fuse), bare prepared inserts (log). Written by `tools/bench/run`.\n")
+          "dynamic-size Eigen (fuse), memcpy (fuse_grid), projections alone (camera), bare prepared inserts (log). Written by `tools/bench/run`.\n")
     print("| workload | floor | ours | ratio | goal | |")
     print("|---|---|---|---|---|---|")
     for workload in GOALS:
@@ -95,7 +98,10 @@ def main():
           "collisions (60 s each, 100,000 moving radios for 10 s; what those hold is within 2 GiB, or "
           "nothing is written); `fuse` is covariance intersection with optimal ω in 4-D and 6-D; `add`, `means` and `intersect` "
           "are trajectories of 20, 100 and 1000 steps in 6-D: one added to another, all means, and "
-          "intersection of minimum determinant, beside the floor of means; `log` writes "
+          "intersection of minimum determinant, beside the floor of means; `fuse_grid` fuses certainty grids of "
+          "100×100 and 1000×1000 cells, in bytes read and written, and `fuse_grid_channel` takes off a third grid; "
+          "`camera` updates a grid of 4096×4096 cells by an image in which 400 to 102,400 of them are in view, and "
+          "`camera_grid` grids of 64×64 and 4096×4096 with 1600 in view; `log` writes "
           "rows into SQLite.")
 
 

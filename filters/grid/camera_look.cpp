@@ -1,0 +1,269 @@
+#include "filters/grid/camera_look.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "filters/grid/footprint.hpp"
+#include "sim/kernel/error.hpp"
+#include "sim/math/functions.hpp"
+
+namespace hearsay::grid {
+namespace {
+
+using gaussian::CameraPose;
+using gaussian::Matrix;
+using gaussian::Matrix3;
+using gaussian::Vector;
+using gaussian::Vector3;
+
+/// Squared Mahalanobis distance up to which pixels count.
+constexpr double gate = 9.0;
+/// Of an ellipse in any direction, pixels²: ¼ less rounding.
+constexpr double least_variance = 0.24;
+
+struct Pixel {
+  double u, v;
+};
+/// Nothing unless the point lies ahead. H as in homography_of().
+std::optional<Pixel> pixel_of(const Matrix3& homography, Point at) {
+  const auto row = [&](int i) {
+    return homography(i, 0) * at.x_m + homography(i, 1) * at.y_m + homography(i, 2);
+  };
+  const double ahead = row(2);
+  if (!(ahead > 0.0)) return std::nullopt;
+  return Pixel{row(0) / ahead, row(1) / ahead};
+}
+
+/// H with s·(u, v, 1) = H·(x, y, 1) for points (x, y) on the plane z = `ground_m`, s > 0 the
+/// distance ahead: K·R·(e_x, e_y, (0, 0, z) − t), eq. 3.57.
+Matrix3 homography_of(const gaussian::Intrinsics& lens, const CameraPose& pose, double ground_m) {
+  Matrix3 k;
+  k << lens.focal_u, lens.skew, lens.center_u, 0.0, lens.focal_v, lens.center_v, 0.0, 0.0, 1.0;
+  const Matrix3 to_pixel = k * pose.axes.transpose();
+  Matrix3 homography;
+  homography.col(0) = to_pixel.col(0);
+  homography.col(1) = to_pixel.col(1);
+  homography.col(2) = to_pixel * (Vector3(0.0, 0.0, ground_m) - pose.position_m);
+  return homography;
+}
+
+/// First and last whole number in [from, to], within 0 … count − 1.
+struct Whole {
+  int first, last;
+};
+Whole whole_between(double from, double to, int count) {
+  return {static_cast<int>(std::clamp(std::ceil(from), 0.0, count + 0.0)),
+          static_cast<int>(std::clamp(std::floor(to), -1.0, count - 1.0))};
+}
+
+/// The weight exp(−d²/2) at a pixel, d² = a·du² + 2b·du·dv + c·dv², and how it goes on: it changes
+/// by a factor from pixel to pixel, and that by a constant one, since d² is quadratic. Steps along
+/// the edge of an ellipse of at least half a pixel keep d below 6.
+class Walk {
+ public:
+  Walk(double a, double b, double c)
+      : a_(a), b_(b), c_(c), by_a_(math::exp(-a)), by_b_(math::exp(-b)), by_c_(math::exp(-c)) {}
+
+  /// To column `du` and row `dv`, both relative to the centre.
+  void jump(double du, double dv) {
+    weight_ = math::exp(-0.5 * (a_ * du * du + 2.0 * b_ * du * dv + c_ * dv * dv));
+    right_ = math::exp(-0.5 * (a_ * (2.0 * du + 1.0) + 2.0 * b_ * dv));
+    down_ = math::exp(-0.5 * (c_ * (2.0 * dv + 1.0) + 2.0 * b_ * du));
+  }
+  void down() {
+    weight_ *= down_;
+    down_ *= by_c_;
+    right_ *= by_b_;
+  }
+  void right() {
+    weight_ *= right_;
+    right_ *= by_a_;
+    down_ *= by_b_;
+  }
+  void left() {
+    right_ *= 1.0 / by_a_;
+    weight_ /= right_;
+    down_ *= 1.0 / by_b_;
+  }
+  /// Weights of `count` pixels from here to the right, and of the marked ones among them.
+  void add_row(const unsigned char* pixels, int count, double& all, double& marked) const {
+    double weight = weight_, factor = right_;
+    for (int i = 0; i < count; ++i) {
+      all += weight;
+      if (pixels[i] != 0) marked += weight;
+      weight *= factor;
+      factor *= by_a_;
+    }
+  }
+
+ private:
+  double a_, b_, c_;
+  double by_a_, by_b_, by_c_;
+  double weight_ = 0.0, right_ = 0.0, down_ = 0.0;
+};
+
+}  // namespace
+
+SegmentedImage::SegmentedImage(int width, int height) : width_(width), height_(height) {
+  require(width >= 1 && width <= side_max && height >= 1 && height <= side_max,
+          "SegmentedImage: sides are 1 to 4096");
+  pixels_.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  clear();
+}
+
+void SegmentedImage::mark(int u, int v) {
+  require(u >= 0 && u < width_ && v >= 0 && v < height_, "SegmentedImage: no such pixel");
+  pixels_[index(u, v)] = 1;
+  marked_ = {std::min(marked_.u_from, u), std::max(marked_.u_to, u), std::min(marked_.v_from, v),
+             std::max(marked_.v_to, v)};
+}
+
+void SegmentedImage::clear() {
+  std::fill(pixels_.begin(), pixels_.end(), static_cast<unsigned char>(0));
+  marked_ = {width_, -1, height_, -1};
+}
+
+std::optional<double> marked_share(const SegmentedImage& image, const PixelEllipse& at) {
+  const double determinant = at.uu * at.vv - at.uv * at.uv;
+  const double over_u = at.uu - least_variance, over_v = at.vv - least_variance;
+  if (!(over_u > 0.0 && over_u * over_v >= at.uv * at.uv)) return std::nullopt;
+  if (!std::isfinite(determinant)) return std::nullopt;
+  const double reach_u = std::sqrt(gate * at.uu), reach_v = std::sqrt(gate * at.vv);
+  const Whole rows = whole_between(at.v - reach_v, at.v + reach_v, image.height());
+  const Whole columns = whole_between(at.u - reach_u, at.u + reach_u, image.width());
+  if (rows.first > rows.last || columns.first > columns.last) return std::nullopt;
+  const SegmentedImage::Box& box = image.marked();
+  const bool inside = at.u >= 0.0 && at.u <= image.width() - 1 && at.v >= 0.0 &&
+                      at.v <= image.height() - 1;  // so that there is a pixel in the ellipse
+  const bool apart = box.u_from > columns.last || box.u_to < columns.first ||
+                     box.v_from > rows.last || box.v_to < rows.first;
+  if (inside && apart) return 0.0;
+  const double a = at.vv / determinant, b = -at.uv / determinant, c = at.uu / determinant;
+  Walk walk(a, b, c);
+  double all = 0.0, marked = 0.0;
+  int column = -1;  // where the walk stands; nowhere yet
+  for (int v = rows.first; v <= rows.last; ++v) {
+    const double dv = v - at.v;
+    const double half = std::sqrt(std::fmax(0.0, a * gate - dv * dv / determinant)) / a;
+    const double middle = at.u - b * dv / a;
+    const Whole range = whole_between(middle - half, middle + half, image.width());
+    if (range.first > range.last) {
+      column = -1;
+      continue;
+    }
+    if (column < 0) {
+      walk.jump(range.first - at.u, dv);
+      column = range.first;
+    } else {
+      walk.down();
+    }
+    for (; column < range.first; ++column) walk.right();
+    for (; column > range.first; --column) walk.left();
+    walk.add_row(image.row(v) + range.first, range.last - range.first + 1, all, marked);
+  }
+  if (!(all > 0.0)) return std::nullopt;
+  return std::min(1.0, marked / all);
+}
+
+CameraLook::CameraLook(const GridCamera& camera, const Area& area) : camera_(camera), area_(area) {
+  require(camera.lens.focal_u > 0.0 && camera.lens.focal_v > 0.0,
+          "GridCamera: focal lengths are positive");
+  require(camera.width >= 1 && camera.width <= SegmentedImage::side_max && camera.height >= 1 &&
+              camera.height <= SegmentedImage::side_max,
+          "GridCamera: sides of the image are 1 to 4096");
+  require(camera.range_max_m > 0.0 && std::isfinite(camera.range_max_m),
+          "GridCamera: the range is positive");
+  require(camera.sigma_pixel >= 0.5 && std::isfinite(camera.sigma_pixel),
+          "GridCamera: a pixel's place is blurred by at least half a pixel");
+  faded(camera.detector, 0.0);
+}
+
+bool CameraLook::look(const CameraPose& pose, const Matrix& covariance) {
+  require(covariance.rows() == 6 && covariance.cols() == 6,
+          "CameraLook: the covariance of a pose is 6×6");
+  require(pose.position_m.allFinite() && pose.axes.allFinite(), "CameraLook: a pose is finite");
+  in_view_.clear();
+  if (!set_samples(pose, covariance)) return false;
+  find_cells(pose);
+  return true;
+}
+
+bool CameraLook::set_samples(const CameraPose& pose, const Matrix& covariance) {
+  Matrix errors = Matrix::Zero(dimension, dimension);
+  errors.topLeftCorner(6, 6) = covariance;
+  const double extent = camera_.cells_have_extent ? area_.cell_m() * area_.cell_m() / 12.0 : 0.0;
+  errors(6, 6) = errors(7, 7) = extent;
+  // κ = 0: the middle weighs nothing, and no ellipse comes out indefinite.
+  const auto points = gaussian::sigma_points({Vector::Zero(dimension), errors}, 0.0);
+  if (!points) return false;
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    const Vector& e = points->points[i];
+    CameraPose moved = pose.turned(e.segment<3>(3));
+    moved.position_m += e.head<3>() - Vector3(e(6), e(7), 0.0);  // a cell moves against it
+    samples_[i] = {homography_of(camera_.lens, moved, camera_.ground_m), points->weights[i]};
+  }
+  return true;
+}
+
+void CameraLook::find_cells(const CameraPose& pose) {
+  const auto reach_m = reach(pose.position_m(2) - camera_.ground_m, camera_.range_max_m);
+  if (!reach_m) return;
+  const gaussian::Intrinsics& k = camera_.lens;
+  const double right = camera_.width - 0.5, low = camera_.height - 0.5;
+  Footprint ground = Footprint::around({pose.position_m(0), pose.position_m(1)}, *reach_m);
+  const std::array<Vector3, 5> walls = {
+      Vector3(0.0, 0.0, 1.0),                            // ahead
+      Vector3(k.focal_u, k.skew, k.center_u + 0.5),      // u ≥ −½
+      Vector3(-k.focal_u, -k.skew, right - k.center_u),  // u ≤ width − ½
+      Vector3(0.0, k.focal_v, k.center_v + 0.5),         // and so v
+      Vector3(0.0, -k.focal_v, low - k.center_v)};
+  for (const Vector3& wall : walls) ground.cut(pose.position_m, pose.axes * wall, camera_.ground_m);
+  const Matrix3 homography = homography_of(k, pose, camera_.ground_m);
+  for_each_cell(ground, area_, [&](int cell) {
+    const Point at = area_.centre(cell);
+    const auto pixel = pixel_of(homography, at);
+    if (!pixel || !(pixel->u >= -0.5 && pixel->u < right)) return;
+    if (!(pixel->v >= -0.5 && pixel->v < low)) return;
+    const Vector3 to = Vector3(at.x_m, at.y_m, camera_.ground_m) - pose.position_m;
+    const double rho = to.dot(to) / (camera_.range_max_m * camera_.range_max_m);
+    if (rho < 1.0) in_view_.push_back({cell, faded(camera_.detector, rho)});
+  });
+}
+
+std::optional<PixelEllipse> CameraLook::ellipse(int cell) const {
+  const Point at = area_.centre(cell);
+  std::array<Pixel, 2 * dimension + 1> pixels;
+  PixelEllipse e{0.0, 0.0, 0.0, 0.0, 0.0};
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    const auto pixel = pixel_of(samples_[i].homography, at);
+    if (!pixel) return std::nullopt;
+    pixels[i] = *pixel;
+    e.u += samples_[i].weight * pixel->u;
+    e.v += samples_[i].weight * pixel->v;
+  }
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    const double du = pixels[i].u - e.u, dv = pixels[i].v - e.v, weight = samples_[i].weight;
+    e.uu += weight * du * du;
+    e.uv += weight * du * dv;
+    e.vv += weight * dv * dv;
+  }
+  const double blur = camera_.sigma_pixel * camera_.sigma_pixel;
+  e.uu += blur;
+  e.vv += blur;
+  return e;
+}
+
+void CameraLook::judge(const SegmentedImage& image, std::vector<CellLook>& out) const {
+  require(image.width() == camera_.width && image.height() == camera_.height,
+          "CameraLook: an image of another size");
+  out.clear();
+  for (const CellInView& in_view : in_view_) {
+    const auto at = ellipse(in_view.cell);
+    const auto share = at ? marked_share(image, *at) : std::nullopt;
+    if (!share) continue;
+    out.push_back(
+        {in_view.cell, log_likelihood_ratio(in_view.detector, *share), *share, 1.0 - *share});
+  }
+}
+
+}  // namespace hearsay::grid

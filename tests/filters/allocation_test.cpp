@@ -70,8 +70,10 @@ TEST(Allocation, DoesNotHappenInFusionRules) {
     EXPECT_EQ(allocations_of([&] { batch.weights(both); }), 0u) << n;
     for (const RuleInfo& row : rules()) {
       if (row.fuses == Fuses::at_once) continue;  // the storage is the batch's
-      for (const auto& [x, y] : {std::pair(&a, &b), {&a, &singular}, {&singular, &singular}}) {
-        EXPECT_EQ(allocations_of([&] { fused(row.rule, *x, *y, Belief::unknown(n)); }), 0u)
+      for (const auto& beliefs : {std::pair(&a, &b), {&a, &singular}, {&singular, &singular}}) {
+        const Belief& x = *beliefs.first;
+        const Belief& y = *beliefs.second;
+        EXPECT_EQ(allocations_of([&] { fused(row.rule, x, y, Belief::unknown(n)); }), 0u)
             << row.name << n;
       }
     }

@@ -12,6 +12,7 @@
 #include "filters/gaussian/fusion.hpp"
 #include "filters/gaussian/geolocation.hpp"
 #include "filters/gaussian/nonlinear.hpp"
+#include "filters/gaussian/trajectory_factor.hpp"
 #include "filters/grid/camera_look.hpp"
 #include "filters/grid/codec.hpp"
 #include "filters/grid/fusion.hpp"
@@ -74,8 +75,10 @@ TEST(Allocation, DoesNotHappenInFusionRules) {
     EXPECT_EQ(allocations_of([&] { batch.weights(both); }), 0u) << n;
     for (const RuleInfo& row : rules()) {
       if (row.fuses == Fuses::at_once) continue;  // the storage is the batch's
-      for (const auto& [x, y] : {std::pair(&a, &b), {&a, &singular}, {&singular, &singular}}) {
-        EXPECT_EQ(allocations_of([&] { fused(row.rule, *x, *y, Belief::unknown(n)); }), 0u)
+      for (const auto& beliefs : {std::pair(&a, &b), {&a, &singular}, {&singular, &singular}}) {
+        const Belief& x = *beliefs.first;
+        const Belief& y = *beliefs.second;
+        EXPECT_EQ(allocations_of([&] { fused(row.rule, x, y, Belief::unknown(n)); }), 0u)
             << row.name << n;
       }
     }
@@ -123,6 +126,40 @@ TEST(Allocation, DoesNotHappenInAWarmCodec) {
     EXPECT_EQ(allocations_of([&] { encode(*message, bytes); }), 0u);
     EXPECT_EQ(allocations_of([&] { decode(bytes, back); }), 0u);
     EXPECT_EQ(back.beliefs.size(), message->beliefs.size());
+  }
+}
+
+TEST(Allocation, DoesNotHappenInWarmTrajectories) {
+  for (const int axes : {1, 2, 3}) {
+    const int n = 2 * axes;
+    const Transition move = white_noise_acceleration(axes, 1.0, 0.1);
+    Belief seen = Belief::unknown(n);
+    for (int i = 0; i < axes; ++i) seen.omega(i, i) = seen.xi(i) = 1.0 + i;
+    Trajectory own(n, 0);
+    own.update(0, seen);
+    for (Stamp k = 1; k <= 20; ++k) own.augment(k, move);
+    ASSERT_TRUE(own.marginalise(0));  // the window is full; what it needs while it slides, it has
+    Trajectory other = own;
+    for (int k = 0; k < other.steps(); ++k) other.update(k, seen);
+    Trajectory heard = own;
+    TrajectoryFactor factor;
+    ASSERT_EQ(factor.factor(other), Definiteness::positive);
+    factor.means();
+    EXPECT_EQ(allocations_of([&] {
+                own += other;
+                own.intersect(0.4, other);
+                heard = own;
+                intersect_det(own, other);
+                factor.factor(own);
+                factor.means();
+                own.augment(21, move);
+                own.update(own.steps() - 1, seen);
+                own.marginalise(0);
+              }),
+              0u)
+        << n;
+    EXPECT_EQ(own.stamps().front(), 2);
+    EXPECT_EQ(own.stamps().back(), 21);
   }
 }
 

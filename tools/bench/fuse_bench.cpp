@@ -11,24 +11,11 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <cmath>
-#include <cstdlib>
 #include <vector>
 
 #include "filters/gaussian/fusion.hpp"
 #include "sim/kernel/random.hpp"
-
-namespace {
-std::size_t allocations = 0;
-}
-
-// Both operator new and Eigen's heap end in malloc. (__libc_malloc is glibc's own name for it.)
-extern "C" {
-void* __libc_malloc(std::size_t size);
-void* malloc(std::size_t size) {
-  ++allocations;
-  return __libc_malloc(size);
-}
-}
+#include "tools/bench/count_allocations.hpp"
 
 namespace {
 
@@ -142,11 +129,11 @@ void floor_fuse(benchmark::State& state) {
 const char* what_is_wrong(const std::vector<HeapBelief>& a, const std::vector<HeapBelief>& b,
                           const std::vector<Belief>& own, const std::vector<Belief>& received) {
   for (std::size_t i = 0; i < pairs; ++i) {
-    const std::size_t before = allocations;
+    const std::size_t before = hearsay::bench::allocations;
     const Fusion ours = fuse(own[i], received[i]);
-    if (allocations != before) return "ours allocates";
+    if (hearsay::bench::allocations != before) return "ours allocates";
     const HeapFusion floor = fuse(a[i], b[i]);
-    if (allocations == before) return "allocations are not counted";
+    if (hearsay::bench::allocations == before) return "allocations are not counted";
     if (!(std::fabs(ours.omega - floor.omega) <= 1e-9)) return "ω differs from the floor's";
     const auto close = [](const auto& x, const auto& y) {
       return (x - y).norm() <= 1e-9 * y.norm();

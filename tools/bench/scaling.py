@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Whole runs: how fast the rumour study is swept, how CPU time grows with agents and simulated time, and
-memory with simulated time.
+"""Whole runs: how fast the rumour study is swept, a fleet that follows moving targets, how CPU time grows
+with agents and simulated time, and memory with simulated time.
 
 Usage: scaling.py HEARSAY [--hour]     writes Markdown; --hour adds an hour of 10,000 agents (minutes)
 """
@@ -19,20 +19,27 @@ SPACING_M = 20.0
 REPETITIONS = 3
 HERE = os.path.dirname(os.path.abspath(__file__))
 SCENARIO = os.path.join(HERE, "scale.toml")
+FLEET = os.path.join(HERE, "fleet.toml")
+FLEET_S = 600.0
 STUDY = os.path.join(HERE, "../../scenarios/rumour/rumour.study.toml")
 RUNS = 21600  # of the study
 
 
 def run(hearsay, agents, duration_s):
     """CPU seconds and peak memory in MB of one run."""
+    return measured(hearsay, SCENARIO, [
+        f"agents.count={agents}", f"agents.circle.radius_m={agents * SPACING_M / (2 * math.pi)!r}",
+        f"duration_s={float(duration_s)!r}"])
+
+
+def measured(hearsay, scenario, sets):
+    """CPU seconds and peak memory in MB of one run of a scenario."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    sets = [f"agents.count={agents}", f"agents.circle.radius_m={agents * SPACING_M / (2 * math.pi)!r}",
-            f"duration_s={float(duration_s)!r}"]
     # A process of its own between, so that the peak is this run's and not the largest so far.
     code = ("import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True, "
             "stdout=subprocess.DEVNULL); "
             "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)")
-    command = [hearsay, "run", SCENARIO, "--digest"] + [word for s in sets for word in ("--set", s)]
+    command = [hearsay, "run", scenario, "--digest"] + [word for s in sets for word in ("--set", s)]
     peak = subprocess.run([sys.executable, "-S", "-c", code] + command, check=True,
                           capture_output=True, text=True)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -73,6 +80,19 @@ def sweeps(hearsay):
           f"turn; pair by pair {spread}).")
 
 
+def fleets(hearsay, duration_s):
+    print("\n## A fleet that follows moving targets\n")
+    print(f"`tools/bench/fleet.toml`: a hundred agents, each with a 4-D belief about each of ten targets, that see "
+          f"all ten and talk once a second under ci-det; {duration_s:g} s, ledger off. One run a row, start-up, "
+          "motion, sightings and predictions included.\n")
+    print("| graph | CPU time [s] | times real time | [µs] a belief heard | peak memory [MB] |")
+    print("|---|---|---|---|---|")
+    for topology, heard in (("ring", 2), ("full", 99)):
+        cpu, peak = measured(hearsay, FLEET, [f'radio.topology="{topology}"', f"duration_s={float(duration_s)!r}"])
+        beliefs = 100 * heard * 0.9 * 10 * duration_s  # a tenth of the packets is lost
+        print(f"| {topology} | {cpu:.1f} | {duration_s / cpu:.1f} | {1e6 * cpu / beliefs:.2f} | {peak:.1f} |")
+
+
 def section(title, unit, sizes, times):
     print(f"\n{title}: exponent {exponent(sizes, times):.3f} "
           f"(least squares of log time on log {unit}).\n")
@@ -84,6 +104,7 @@ def section(title, unit, sizes, times):
 def main():
     hearsay = sys.argv[1]
     sweeps(hearsay)
+    fleets(hearsay, FLEET_S)
     start_s = cpu_s(hearsay, 2, 0.001)  # what a process costs that does nothing; taken off below
     print("\n## How cost grows\n")
     print("`tools/bench/scale.toml`: agents 20 m apart on a ring, six in range of each, that look at "

@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
-"""Google Benchmark's JSON files as one table: a row a workload, ours beside its floor and the goal."""
+"""Google Benchmark's JSON files as tables: a row a workload, ours beside its floor and the goal; then
+what has a goal in microseconds, and how the cost of trajectories grows with their length."""
 import json
+import math
 import platform
 import statistics
 import subprocess
@@ -19,6 +21,7 @@ GOALS = {
     "sensing/100": None, "sensing/1000": None, "sensing/10000": None,
     "fuse/4": 3.0, "fuse/6": None,
     "add/20": None, "add/100": None, "add/1000": None,
+    "weigh/20": None, "weigh/100": None, "weigh/1000": None,
     "means/20": None, "means/100": None, "means/1000": None,
     "intersect/20": None, "intersect/100": None, "intersect/1000": None,
     "fuse_grid/100": None, "fuse_grid/1000": 0.5, "fuse_grid_channel/1000": None,
@@ -28,7 +31,13 @@ GOALS = {
 # Measured against another workload's floor: what a time-out an event costs beside none at all.
 FLOOR_OF = {"intersect": "means", "timeouts": "hold", "moving": "beacon", "fading": "beacon", "sensing": "beacon",
             "fuse_grid_channel": "fuse_grid"}
-COUNTERS = {"bytes_per_process": "bytes a process", "bytes_per_agent": "bytes an agent", "bytes/row": "bytes a row"}
+# Microseconds a call must stay below.
+BELOW_US = {"fuse/4": 1.0, "fuse/6": 2.0, "add/20": 5.0, "weigh/20": 5.0, "means/20": 30.0, "intersect/20": 100.0}
+# Exponents of time against steps, 20 to 1000: 1 within this.
+GROWS = ("add", "weigh", "means", "intersect")
+EXPONENT_WITHIN = 0.1
+COUNTERS = {"bytes_per_process": "bytes a process", "bytes_per_agent": "bytes an agent", "bytes/row": "bytes a row",
+            "allocations": "allocations a call"}
 RATES = ("items_per_second", "deliveries_per_s", "rows/s")
 
 
@@ -66,6 +75,37 @@ def collect(files):
     return rates, counters
 
 
+def exponent(sizes, times):
+    """Slope of log time on log size by least squares."""
+    x, y = ([math.log(v) for v in values] for values in (sizes, times))
+    mean_x, mean_y = statistics.fmean(x), statistics.fmean(y)
+    return (sum((u - mean_x) * (v - mean_y) for u, v in zip(x, y))
+            / sum((u - mean_x) ** 2 for u in x))
+
+
+def verdict(met):
+    return "met" if met else "**missed**"
+
+
+def print_times(rates):
+    """What has a goal in microseconds, and exponents."""
+    us = {workload: 1e6 / statistics.median(sides["ours"]) for workload, sides in rates.items() if "ours" in sides}
+    print("\n## Fusion and trajectories\n")
+    print("CPU time of a call, from the same measurements. A trajectory is 6-D.\n")
+    print("| workload | ours [µs] | goal [µs] | |")
+    print("|---|---|---|---|")
+    for workload, goal in BELOW_US.items():
+        print(f"| {workload} | {us[workload]:.2f} | < {goal:g} | {verdict(us[workload] < goal)} |")
+    print("\n| trajectories of | 20 steps [µs] | 100 [µs] | 1000 [µs] | exponent | goal | |")
+    print("|---|---|---|---|---|---|---|")
+    sizes = (20, 100, 1000)
+    for kind in GROWS:
+        times = [us[f"{kind}/{size}"] for size in sizes]
+        slope = exponent(sizes, times)
+        print(f"| {kind} | " + " | ".join(f"{t:.2f}" for t in times)
+              + f" | {slope:.3f} | 1 ± {EXPONENT_WITHIN} | {verdict(abs(slope - 1.0) <= EXPONENT_WITHIN)} |")
+
+
 def main():
     rates, counters = collect(sys.argv[1:])
     compiler = subprocess.run(["g++", "--version"], capture_output=True, text=True).stdout.split("\n")[0]
@@ -96,13 +136,15 @@ def main():
           "added, beside the same floor, which does without: Gauss-Markov motion at 10 m/s, log-distance "
           "with shadowing where every reception is drawn from its SNR, carrier sense with back-off and "
           "collisions (60 s each, 100,000 moving radios for 10 s; what those hold is within 2 GiB, or "
-          "nothing is written); `fuse` is covariance intersection with optimal ω in 4-D and 6-D; `add`, `means` and `intersect` "
-          "are trajectories of 20, 100 and 1000 steps in 6-D: one added to another, all means, and "
-          "intersection of minimum determinant, beside the floor of means; `fuse_grid` fuses certainty grids of "
+          "nothing is written); `fuse` is covariance intersection with optimal ω in 4-D and 6-D; `add`, `weigh`, `means` "
+          "and `intersect` are trajectories of 20, 100 and 1000 steps in 6-D: one added to another, the two "
+          "weighted by a fixed ω, all means, and intersection of minimum determinant, beside the floor of "
+          "means (fusion and trajectories that allocate once warm are refused); `fuse_grid` fuses certainty grids of "
           "100×100 and 1000×1000 cells, in bytes read and written, and `fuse_grid_channel` takes off a third grid; "
           "`camera` updates a grid of 4096×4096 cells by an image in which 400 to 102,400 of them are in view, and "
           "`camera_grid` grids of 64×64 and 4096×4096 with 1600 in view; `log` writes "
           "rows into SQLite.")
+    print_times(rates)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 // Trajectories of T steps in 6-D (three axes, white-noise acceleration, measured at every step):
-// add one to another, solve for all means, and weigh two by covariance intersection of minimum
-// determinant, then fuse them. An item is one trajectory.
+// add one to another, add them weighted by a fixed ω, solve for all means, and weigh two by
+// covariance intersection of minimum determinant, then fuse them. An item is one trajectory. Ours
+// must not allocate once it is warm.
 //
 // floor: as a user of Eigen would write it, with 6×6 matrices of fixed size in std::vector: blocks
 // added one by one; block Cholesky factorisation forwards, means backwards. Intersection is
@@ -18,6 +19,7 @@
 
 #include "filters/gaussian/trajectory_factor.hpp"
 #include "sim/kernel/random.hpp"
+#include "tools/bench/count_allocations.hpp"
 
 namespace {
 
@@ -112,14 +114,59 @@ void floor_add(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations());
 }
 
+/// Does `work` once to warm up, then counts and times it.
+template <typename Work>
+void measure(benchmark::State& state, const Work& work) {
+  work();
+  const std::size_t before = hearsay::bench::allocations;
+  work();
+  const std::size_t asked = hearsay::bench::allocations - before;
+  if (before == 0) {  // the trajectories themselves are on the heap
+    state.SkipWithError("allocations are not counted");
+    return;
+  }
+  if (asked != 0) {
+    state.SkipWithError("ours allocates");
+    return;
+  }
+  for (auto _ : state) work();
+  state.SetItemsProcessed(state.iterations());
+  state.counters["allocations"] = static_cast<double>(asked);
+}
+
 void our_add(benchmark::State& state) {
   Trajectory own = made(steps_of(state), 0);
   const Trajectory other = made(steps_of(state), 1);
-  for (auto _ : state) {
+  measure(state, [&] {
     own += other;
+    benchmark::ClobberMemory();
+  });
+}
+
+constexpr double fixed_omega = 0.4;
+
+void floor_weigh(benchmark::State& state) {
+  Plain own = plain(made(steps_of(state), 0));
+  const Plain other = plain(made(steps_of(state), 1));
+  const auto weigh = [](auto& x, const auto& y) { x = fixed_omega * x + (1.0 - fixed_omega) * y; };
+  for (auto _ : state) {
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      weigh(own[k].omega, other[k].omega);
+      weigh(own[k].next, other[k].next);
+      weigh(own[k].xi, other[k].xi);
+    }
     benchmark::ClobberMemory();
   }
   state.SetItemsProcessed(state.iterations());
+}
+
+void our_weigh(benchmark::State& state) {
+  Trajectory own = made(steps_of(state), 0);
+  const Trajectory other = made(steps_of(state), 1);
+  measure(state, [&] {
+    own.intersect(fixed_omega, other);
+    benchmark::ClobberMemory();
+  });
 }
 
 void floor_means(benchmark::State& state) {
@@ -141,28 +188,28 @@ void our_means(benchmark::State& state) {
       return;
     }
   }
-  for (auto _ : state) {
+  measure(state, [&] {
     factor.factor(trajectory);
     benchmark::DoNotOptimize(factor.means().data());
-  }
-  state.SetItemsProcessed(state.iterations());
+  });
 }
 
 void our_intersection(benchmark::State& state) {
   const Trajectory own = made(steps_of(state), 0);
   const Trajectory other = made(steps_of(state), 1);
   Trajectory fused = own;
-  for (auto _ : state) {
+  measure(state, [&] {
     const auto omega = hearsay::gaussian::intersect_det(own, other);
     fused = own;
     fused.intersect(omega.value_or(0.5), other);
     benchmark::ClobberMemory();
-  }
-  state.SetItemsProcessed(state.iterations());
+  });
 }
 
 BENCHMARK(floor_add)->Name("floor/add")->Arg(20)->Arg(100)->Arg(1000);
 BENCHMARK(our_add)->Name("ours/add")->Arg(20)->Arg(100)->Arg(1000);
+BENCHMARK(floor_weigh)->Name("floor/weigh")->Arg(20)->Arg(100)->Arg(1000);
+BENCHMARK(our_weigh)->Name("ours/weigh")->Arg(20)->Arg(100)->Arg(1000);
 BENCHMARK(floor_means)->Name("floor/means")->Arg(20)->Arg(100)->Arg(1000);
 BENCHMARK(our_means)->Name("ours/means")->Arg(20)->Arg(100)->Arg(1000);
 BENCHMARK(our_intersection)->Name("ours/intersect")->Arg(20)->Arg(100)->Arg(1000);

@@ -16,8 +16,9 @@ import data
 import panels
 import style
 
-# The first rate of loss is drawn strong, others weaker: width, marker, opacity.
-LOOKS = ((1.9, "o", 1.0), (1.3, "s", 0.7), (1.0, "^", 0.45))
+# A rate of loss: dash, marker, its face (None: the rule's colour).
+LOOKS = (("-", "o", None), ((0, (4.0, 1.6)), "s", "white"), ((0, (1.0, 1.4)), "^", None))
+APART = 0.07  # between what stands at the same period
 QUANTITIES = (
     ("position_error_mean_m", "Mean distance from the true position [m]"),
     ("pose_anees", "ANEES of the poses, 1 if consistent"),
@@ -38,22 +39,20 @@ def draw_panel(axes, chosen, scalar, landmarks, periods, losses):
     x = np.arange(len(periods), dtype=float)
     for r, rule in enumerate(rules):
         color, _ = style.rule_style(rule, chosen.labels("rule"))
-        for (width, marker, alpha), loss in zip(LOOKS, losses):
+        for k, ((dash, marker, face), loss) in enumerate(zip(LOOKS, losses)):
             cells = [
                 chosen.cell(landmarks=landmarks, rule=rule, period=p, loss=loss) for p in periods
             ]
             values = np.array([over_agents(scalar, c) for c in cells])
-            at = x + 0.06 * (r - 0.5)
-            axes.vlines(
-                at, values.min(axis=1), values.max(axis=1), color=color, lw=0.9, alpha=alpha,
-                zorder=2.5,
-            )
+            place = r * len(losses) + k - 0.5 * (len(rules) * len(losses) - 1)
+            at = x + APART * place
+            axes.vlines(at, values.min(axis=1), values.max(axis=1), color=color, lw=0.9, zorder=2.5)
             axes.plot(
-                at, values.mean(axis=1), "-", color=color, lw=width, marker=marker, ms=4.5,
-                alpha=alpha, zorder=3,
+                at, values.mean(axis=1), ls=dash, color=color, lw=1.3, marker=marker, ms=4.5,
+                mfc=face or color, zorder=3,
             )
     axes.set_xticks(x, [f"{data.label_text(p)} s" for p in periods])
-    axes.set_xlim(-0.25, len(periods) - 0.75)
+    axes.set_xlim(-0.35, len(periods) - 0.65)
     axes.grid(axis="x", visible=False)
 
 
@@ -66,10 +65,10 @@ def legend_entries(chosen, losses):
         if rule == "none":
             continue
         color, _ = style.rule_style(rule, chosen.labels("rule"))
-        for (_, marker, alpha), loss in zip(LOOKS, losses):
+        for (dash, marker, face), loss in zip(LOOKS, losses):
             entries.append(
                 panels.line_entry(
-                    "-", color, f"{rule}, {data.percent(loss)} lost", marker, alpha=alpha
+                    dash, color, f"{rule}, {data.percent(loss)} lost", marker, mfc=face or color
                 )
             )
     return entries

@@ -49,7 +49,7 @@ def over_time(axes, chosen, where):
         f"True error a coordinate [m], root mean square over robots ({where['topology']},"
         f" {data.percent(where['loss'])} lost)", loc="left", fontweight="bold",
     )
-    axes.legend(loc="lower right", bbox_to_anchor=(1.0, 0.98), ncol=4, fontsize=8.0)
+    axes.legend(loc="upper left", bbox_to_anchor=(0.005, 1.0), ncol=2, fontsize=8.0)
 
 
 def medians(axes, chosen, scalar, topology, exchanges, losses):

@@ -28,7 +28,8 @@ _RULES = {
     "ci-trace": (SKY, "D"),
     "most-certain": (PURPLE, "P"),
 }
-_OTHERS = ((PURPLE, "P"), (BLACK, "*"), (GREY, "h"), (PURPLE, "<"), (BLACK, ">"))
+_OTHERS = ((PURPLE, "X"), (BLACK, "*"), (GREEN, "<"), (ORANGE, "h"), (SKY, ">"), (BLUE, "p"), (GREY, "H"),
+           (VERMILLION, "d"))
 
 RC = {
     "font.family": "DejaVu Sans",
@@ -73,7 +74,9 @@ def rule_style(rule, rules):
     if rule in _RULES:
         return _RULES[rule]
     others = [r for r in rules if r not in _RULES]
-    return _OTHERS[others.index(rule) % len(_OTHERS)]
+    taken = {_RULES[r][0] for r in rules if r in _RULES}
+    free = sorted(_OTHERS, key=lambda look: look[0] in taken)  # colours that nobody has yet come first
+    return free[others.index(rule) % len(free)]
 
 
 def number(value, digits=2):

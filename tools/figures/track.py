@@ -58,8 +58,10 @@ def error_limits(series, cells, agents):
     """Of all error axes; a claim far below every error leaves the panel."""
     who = [Agent(series["rms_error_m"], a) for a in agents]
     errors = panels.finite([panels.rms(w, cell).value for w in who for cell in cells], "error")
-    central = panels.rms(series["claimed_sigma_m"], cells[0], "central").value
-    low = min(np.nanmin(errors[errors > 0]), np.nanmin(central))
+    central = panels.finite(
+        [panels.rms(series[name], cells[0], "central").value for name in ("rms_error_m", "claimed_sigma_m")],
+        "central filter")
+    low = min(np.nanmin(errors[errors > 0]), np.nanmin(central[central > 0]))
     return 0.5 * low, 1.4 * np.nanmax(errors)
 
 
@@ -79,11 +81,12 @@ def time_panel(axes, series, cell, agent, color, spans):
     own = {name: Agent(series[name], agent) for name in ("rms_error_m", "claimed_sigma_m")}
     error = panels.rms(own["rms_error_m"], cell, interval=True)
     claimed = panels.rms(own["claimed_sigma_m"], cell)
-    central = panels.rms(series["claimed_sigma_m"], cell, "central")
     for start, end in spans:
         axes.axvspan(start, end, color="#efe6cf", lw=0.0, zorder=0.4)
     panels.shade_gap(axes, t_s, claimed, error, color)
-    panels.draw(axes, t_s, central, style.BLACK, "-", width=1.0, zorder=2)
+    for name, dash in (("rms_error_m", "-"), ("claimed_sigma_m", DASHED)):
+        central = panels.rms(series[name], cell, "central")
+        panels.draw(axes, t_s, central, style.BLACK, dash, width=0.9, zorder=2)
     axes.fill_between(t_s, error.low, error.high, color=color, alpha=0.45, lw=0.0, zorder=2.5)
     panels.draw(axes, t_s, error, color, "-", width=1.6)
     panels.draw(axes, t_s, claimed, color, DASHED, width=1.8, zorder=3.5)
@@ -147,7 +150,7 @@ def decorate(figure, chosen, arguments, spans):
     entries = [
         panels.line_entry("-", style.GREY, "true error, with 95 % interval"),
         panels.line_entry(DASHED, style.GREY, "claimed σ"),
-        panels.line_entry("-", style.BLACK, "σ of the central filter" + ("" if arguments.no_map else "; on maps, wide: the truth")),
+        panels.line_entry("-", style.BLACK, "black: of the central filter" + ("" if arguments.no_map else "; on maps, wide: the truth")),
         panels.fill_entry("claims too much: overconfident", True),
         panels.fill_entry("claims too little: gives away", False),
     ]

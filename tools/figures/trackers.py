@@ -20,15 +20,17 @@ KINDS = (
     ("false_tracks", "tracks of nothing", style.VERMILLION),
     ("double_tracks", "second tracks of a target", style.ORANGE),
 )
+APART = 4  # a marker every so many instants, and another rule's at another one: some curves lie on others
 BY_DIRECTION = ("inverse-ci", "ellipsoidal")  # dashed: there are more rules than colours
 
 
 def over_time(axes, series, chosen, rules):
-    for rule in rules:
+    for i, rule in enumerate(rules):
         color, marker = style.rule_style(rule, rules)
         curve = panels.mean(series, chosen.cell(rule=rule))
         dash = "--" if rule in BY_DIRECTION else "-"
-        axes.plot(series.t_s, curve.value, dash, color=color, marker=marker, ms=3.5, label=rule)
+        axes.plot(series.t_s, curve.value, dash, color=color, marker=marker, ms=5.0, label=rule,
+                  markevery=(i % APART, APART))
     style.time_axis(axes, series.t_s)
     axes.set_ylim(0.0, None)
     axes.set_xlabel("time [s]")

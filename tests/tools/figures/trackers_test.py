@@ -4,6 +4,8 @@ import unittest
 
 from small_study import T_S, WithDatabase, make_database  # first: it makes the scripts known
 
+import style
+
 AT_END = {"missed_targets": 0.25, "false_tracks": 1.5, "double_tracks": 0.5}
 
 
@@ -35,6 +37,12 @@ class Trackers(WithDatabase):
         self.assertEqual(drawn.count(">2.2<"), 3)  # 0.25 + 1.5 + 0.5 for each rule
         for text in ("my-rule", "targets missed", "tracks of nothing", "4 repetitions"):
             self.assertIn(text, drawn)
+
+    def test_no_two_rules_look_the_same(self):
+        rules = ["none", "naive", "most-certain", "ci-det", "ci-trace", "inverse-ci", "ellipsoidal"]
+        self.assertEqual(len({style.rule_style(rule, rules)[0] for rule in rules}), len(rules))
+        many = rules + ["channel", "channel-robust", "ci-half", "split-ci", "my-rule"]
+        self.assertEqual(len({style.rule_style(rule, many) for rule in many}), len(many))
 
     def test_equal_data_give_equal_bytes(self):
         self.make_study()

@@ -62,6 +62,26 @@ class MovingTargets : public InTempDirectory {
     }
     return values;
   }
+  // Under ci-det, with these words about its talk. Sums of its scalars over agents.
+  std::shared_ptr<const PreparedScenario> that_talks(const std::string& talk) {
+    std::string text = scenario;
+    text.replace(text.find("RULE"), 4, "ci-det");
+    text.replace(text.find("duration_s = 12"), 15, "duration_s = 30");
+    text.replace(text.find("sensor = { kind"), 15, "sensor = { end_s = 12, kind");
+    text.replace(text.find("series_period_s = 12"), 20, "series_period_s = 30");
+    return prepared(
+        text.replace(text.find("period_s = 2 }"), 14, "period_s = 0.5, " + talk + " }"));
+  }
+  std::map<std::string, double> sums(const std::string& talk) {
+    hearsay::Run run(that_talks(talk), catalog_, {.seed = 7});
+    const RunEnd end = run.run();
+    EXPECT_TRUE(end.ok()) << end.message;
+    std::map<std::string, double> sums;
+    for (const ScalarRow& row : run.record().scalars()) {
+      if (row.agent >= 0) sums[std::string(run.record().text(row.name))] += row.value;
+    }
+    return sums;
+  }
   std::string error(const std::string& from, const std::string& to) {
     std::string text = scenario;
     text.replace(text.find("RULE"), 4, "ci-det");
@@ -152,6 +172,46 @@ TEST_F(MovingTargets, OnALineTrajectoriesAreTheCentralFilterAndFiltersAreNot) {
   }
 }
 
+// Three agents with 61 periods of talk each; they look until 12 s.
+TEST_F(MovingTargets, EventTriggeredAgentsSpeakWhileOthersCannotPredictWhatTheyKnow) {
+  const std::string triggered = "policy = \"event-triggered\", divergence_nats = ";
+  const double always = sums("policy = \"periodic\"").at("packets");
+  const double often = sums(triggered + "0.01").at("packets");
+  const double seldom = sums(triggered + "0.5").at("packets");
+  EXPECT_GT(always, 3 * 59);
+  // Who did not look into what was said would speak for the motion alone.
+  EXPECT_LT(often, 3 * 30);
+  EXPECT_LT(seldom, 0.7 * often);
+  EXPECT_GE(seldom, 3 * 2);
+  auto values = last(that_talks(triggered + "0.01"), 7, 0);
+  EXPECT_GT(values.at("claimed_sigma_m"), 0.0);
+  EXPECT_TRUE(std::isnan(values.at("true_sigma_m")));  // sending depends on what was measured
+}
+
+TEST_F(MovingTargets, SmallerContentsCostLessAndAreNotOverconfident) {
+  const std::map<std::string, double> bytes = {{"content = \"belief\"", 156},
+                                               {"content = \"diagonal\"", 108},
+                                               {"content = \"quantised\", bits = 8", 66}};
+  for (const auto& [content, size] : bytes) {
+    const auto ended = sums(content);
+    EXPECT_GT(ended.at("packets"), 3 * 55) << content;
+    EXPECT_EQ(ended.at("bytes_sent"), ended.at("packets") * size) << content;
+    EXPECT_GT(ended.at("fusions"), 300) << content;
+    EXPECT_EQ(ended.at("messages_refused"), 0) << content;
+    const auto what = that_talks(content);
+    const int runs = 100;
+    double nees = 0.0;
+    for (int seed = 1; seed <= runs; ++seed) {
+      auto values = last(what, static_cast<std::uint64_t>(seed), 1);
+      nees += values.at("nees") / runs;
+      EXPECT_EQ(std::isnan(values.at("true_sigma_m")), size == 66) << content;
+    }
+    // At most 4 in the mean; of a mean of 4 in all runs the deviation is √(2·4/runs).
+    EXPECT_LT(nees, 4.0 + 3 * std::sqrt(8.0 / runs)) << content;
+    EXPECT_GT(nees, 0.5) << content;
+  }
+}
+
 TEST_F(MovingTargets, OutOfRangeNothingIsSeen) {
   std::string text = scenario;
   text.replace(text.find("RULE"), 4, "none");
@@ -217,6 +277,35 @@ TEST_F(MovingTargets, WhatDoesNotGoTogetherIsRefused) {
   EXPECT_EQ(error("position_m = [0, 0]\nsensor = {", "sensor = { range_max_m = 5,"),
             "s.toml:20: agents[0].sensor.range_max_m: needs to know where the agent stands: "
             "position_m, circle or motion");
+}
+
+TEST_F(MovingTargets, WhatIsSaidGoesWithWhatIsBelieved) {
+  const std::string talk = "talk = { period_s = 2 }";
+  const std::string triggered = "talk = { policy = \"event-triggered\", divergence_nats = 0.1 }";
+  const std::string diagonal = "talk = { content = \"diagonal\" }";
+  const std::string filter =
+      "\"moving-gaussian\", fusion = \"ci-det\", acceleration_psd_m2_per_s3 = 0.4 }\n";
+  const std::string trajectory =
+      "\"trajectory-gaussian\", fusion = \"ci-det\", acceleration_psd_m2_per_s3 = 0.4 }\n";
+  EXPECT_EQ(error(talk, triggered), "no error");
+  EXPECT_EQ(error(talk, diagonal), "no error");
+  EXPECT_EQ(error(filter + talk, trajectory + "talk = { policy = \"on-update\" }"), "no error");
+  EXPECT_EQ(error(filter + talk, trajectory + triggered),
+            "s.toml:23: agents[0].talk.policy: \"event-triggered\" goes with kinds "
+            "\"static-gaussian\" and \"moving-gaussian\" alone; found \"trajectory-gaussian\"");
+  EXPECT_EQ(error(filter + talk, trajectory + diagonal),
+            "s.toml:23: agents[0].talk.content: \"diagonal\" goes with kinds \"static-gaussian\" "
+            "and \"moving-gaussian\" alone; found \"trajectory-gaussian\"");
+  for (const std::string rule : {"split-ci", "ci-batch", "consensus-information"}) {
+    EXPECT_EQ(error("\"ci-det\"", "\"" + rule + "\""),
+              "s.toml:22: agents[0].estimator.fusion: \"" + rule +
+                  "\" goes with kind \"static-gaussian\" alone; found \"moving-gaussian\"");
+  }
+  // A stamp, four means and ten entries.
+  EXPECT_EQ(error("latency_s = 0.7", "queue_bytes_max = 155"),
+            "s.toml:13: radio.queue_bytes_max = 155: smaller than one packet: a message of all "
+            "beliefs, or a summary, takes 156 bytes with headers");
+  EXPECT_EQ(error("latency_s = 0.7", "queue_bytes_max = 156"), "no error");
 }
 
 }  // namespace

@@ -110,9 +110,10 @@ class Estimator {
   /// Tells that the last speech to `neighbour` (no_agent: to all) was handed over to the radio.
   virtual void sent(AgentId neighbour) = 0;
 
-  /// How much less the neighbours would know who predict that nothing has changed here since it
-  /// last spoke: D(now ‖ then) in nats, the largest over subjects; infinite where it was singular
-  /// or nothing of the kind is kept.
+  /// How much less the neighbours would know who predict that nothing was learnt here since it last
+  /// spoke: D(now ‖ then) in nats, where then is the belief it held, predicted to now if the state
+  /// moves; the largest over subjects. Infinite where it was singular or nothing of the kind is
+  /// kept.
   virtual double news_nats() const { return std::numeric_limits<double>::infinity(); }
 
   /// Takes in a message. Malformed or outdated ones are refused and counted.

@@ -133,18 +133,20 @@ template <class V>
 void describe(V& v, TalkSpec& s) {
   v.field("policy", s.policy,
           one_of({"periodic", "on-update", "event-triggered", "adaptive", "never"}),
-          "at every period; at those before which it measured; at those at which it has news; less "
-          "often "
-          "while its radio is busy; never");
+          "at every period; at those before which it measured; at those at which it has news (not "
+          "with trajectory-gaussian); less often while its radio is busy; never. Trackers and "
+          "localizers: \"periodic\" and \"never\" alone");
   v.field("period_s", s.period_s, time_span(false), "time between sendings");
   v.field("phase", s.phase, one_of({"random", "staggered", "together"}),
           "first sending: at random, agent i of n at i·period/n, or all at once");
   v.field("phase_s", s.phase_s, time_span(true), "first sending of this agent, below the period");
   v.field("service", s.service, one_of(service_names()), "how what it says travels");
-  v.field("divergence_nats", s.divergence_nats, greater_than_zero(),
-          "\"event-triggered\": how far its belief may move from what it last sent");
+  v.field(
+      "divergence_nats", s.divergence_nats, greater_than_zero(),
+      "\"event-triggered\": how far its belief may be from what it last sent, predicted to now");
   v.field("content", s.content, one_of({"belief", "diagonal", "quantised"}),
-          "what of a belief is said; the smaller ones claim less");
+          "what of a belief is said; the smaller ones claim less. Trajectories, trackers and "
+          "localizers: \"belief\" alone");
   v.field("bits", s.bits, between(4, 16),
           "\"quantised\": of an entry of the covariance; default 8");
 }

@@ -65,20 +65,26 @@ void check_content(const ScenarioUnderCheck& file, const AgentSpec& agent, const
   }
 }
 
-// What is known for states that stand still only.
+// What is known for states that stand still, or are of one instant, only.
 void check_kind(const ScenarioUnderCheck& file, const AgentSpec& agent, const KeyPath& path) {
   const std::string& kind = agent.estimator.kind;
   if (kind == "static-gaussian" || agent.kind != "estimator") return;
-  const std::string only = " goes with kind \"static-gaussian\" alone; found " + quoted(kind);
   const KeyPath talk = path["talk"];
-  if (agent.talk.policy == "event-triggered")
-    file.fail(talk["policy"], "\"event-triggered\"" + only);
-  if (agent.talk.content != "belief") file.fail(talk["content"], quoted(agent.talk.content) + only);
+  if (kind == "trajectory-gaussian") {
+    const std::string only =
+        R"( goes with kinds "static-gaussian" and "moving-gaussian" alone; found )" + quoted(kind);
+    if (agent.talk.policy == "event-triggered")
+      file.fail(talk["policy"], "\"event-triggered\"" + only);
+    if (agent.talk.content != "belief")
+      file.fail(talk["content"], quoted(agent.talk.content) + only);
+  }
   const auto rule = gaussian::rule_by_name(agent.estimator.fusion);
   const bool held = rule && gaussian::info(*rule).memory == gaussian::Memory::held;
-  if (held || message_form_of(agent) != gaussian::MessageForm::plain) {
+  if (held || (rule && message_form(*rule, Content::belief) != gaussian::MessageForm::plain)) {
     const KeyPath estimator = path["estimator"];
-    file.fail(estimator["fusion"], quoted(agent.estimator.fusion) + only);
+    file.fail(estimator["fusion"], quoted(agent.estimator.fusion) +
+                                       " goes with kind \"static-gaussian\" alone; found " +
+                                       quoted(kind));
   }
 }
 

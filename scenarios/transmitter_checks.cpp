@@ -11,7 +11,8 @@
 namespace hearsay {
 namespace {
 
-// The largest message of the built-in agents, in bytes; 0 if there are none.
+// The largest message of the built-in agents, in bytes, that of a trajectory of one instant
+// counted; 0 if there are none.
 std::size_t message_bytes_max(const Scenario& scenario) {
   const bool estimates = std::any_of(scenario.agents.begin(), scenario.agents.end(),
                                      [](const AgentSpec& a) { return a.kind == "estimator"; });
@@ -19,9 +20,11 @@ std::size_t message_bytes_max(const Scenario& scenario) {
   std::size_t most = 0;
   for (const AgentSpec& agent : scenario.agents) {
     if (agent.kind != "estimator") continue;
-    most =
-        std::max(most, gaussian::encoded_size(message_form_of(agent), scenario.world.targets.size(),
-                                              2, agent.talk.bits.value_or(8)));
+    const bool moves = agent.estimator.kind != "static-gaussian";
+    const std::size_t size =
+        gaussian::encoded_size(message_form_of(agent), scenario.world.targets.size(), moves ? 4 : 2,
+                               agent.talk.bits.value_or(8));
+    most = std::max(most, moves ? size + gaussian::stamp_bytes : size);
   }
   return most;
 }

@@ -124,7 +124,7 @@ GaussianEstimator::Speech GaussianEstimator::speech(AgentId neighbour) {
   message.count = next_count_++;
   if (options_.motion) {
     workspace_->outgoing.stamp = stamp_ * options_.motion->period.nanoseconds();
-    gaussian::encode(workspace_->outgoing, workspace_->bytes);
+    gaussian::encode(form_, workspace_->outgoing, workspace_->outgoing_extras, workspace_->bytes);
   } else {
     gaussian::encode(form_, message, workspace_->outgoing_extras, workspace_->bytes);
   }
@@ -159,6 +159,7 @@ void GaussianEstimator::sent(AgentId neighbour) {
   if (!last_fresh_.empty()) last_fresh_ = unsent_;
   for (TrackedBelief& unsent : unsent_) unsent = unknown();
   for (std::size_t s = 0; s < own_.size(); ++s) last_said_[s] = own_[s].belief;
+  last_said_at_ = stamp_;
   if (rule_.memory != Memory::last_exchanged) return;
   for (Neighbour& to : neighbours_) {
     if (neighbour == no_agent || neighbour == to.id) to.memory = own_;
@@ -215,8 +216,8 @@ bool GaussianEstimator::decode(std::span<const std::byte> bytes,
     return gaussian::decode(form_, bytes, message.message, workspace_->incoming_extras);
   }
   const std::int64_t period = options_.motion->period.nanoseconds();
-  return gaussian::decode(bytes, message) && message.stamp >= 0 &&
-         message.stamp <= stamp_ * period && message.stamp % period == 0;
+  return gaussian::decode(form_, bytes, message, workspace_->incoming_extras) &&
+         message.stamp >= 0 && message.stamp <= stamp_ * period && message.stamp % period == 0;
 }
 
 bool GaussianEstimator::outdated(Neighbour& from, const gaussian::Message& message) const {

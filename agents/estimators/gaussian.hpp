@@ -106,6 +106,7 @@ class GaussianEstimator final : public Estimator {
   bool outdated(Neighbour& from, const gaussian::Message& message) const;
   bool put_into_words(std::size_t subject, const Neighbour* to, std::size_t at, LedgerRider* rider);
   bool shorten(std::size_t at, LedgerRider* rider);
+  void predict_last_said() const;
   void hold(std::size_t subject, Neighbour& from, std::size_t at, const LedgerRider* rider);
   void fuse_held(std::size_t subject, int degree);
   void find_weights(std::size_t subject, int degree);
@@ -126,10 +127,13 @@ class GaussianEstimator final : public Estimator {
   const gaussian::RuleInfo& rule_;
   gaussian::MessageForm form_;
   std::vector<TrackedBelief> own_;
-  std::vector<TrackedBelief> unsent_;        // by subject; what was measured since it last sent
-  std::vector<TrackedBelief> last_fresh_;    // by subject; unsent_ when it last sent, until fused
-  std::vector<gaussian::Belief> last_said_;  // by subject; own belief when it last sent
-  std::vector<Held*> to_fuse_;               // of fuse_held()
+  std::vector<TrackedBelief> unsent_;      // by subject; what was measured since it last sent
+  std::vector<TrackedBelief> last_fresh_;  // by subject; unsent_ when it last sent, until fused
+  // By subject; own belief when it last sent, as it is predicted for stamp last_said_at_: so far as
+  // somebody asked.
+  mutable std::vector<gaussian::Belief> last_said_;
+  mutable std::int64_t last_said_at_ = 0;
+  std::vector<Held*> to_fuse_;  // of fuse_held()
   std::vector<const gaussian::Matrix*> matrices_;
   std::vector<double> weights_;  // own first, then as in to_fuse_
   int degree_ = 0;

@@ -1,4 +1,4 @@
-// The static estimator's rules that fuse all at once or by parts, and what it says instead of whole
+// The estimator's rules that fuse all at once or by parts, and what it says instead of whole
 // beliefs.
 #include <algorithm>
 #include <limits>
@@ -74,7 +74,17 @@ bool GaussianEstimator::shorten(std::size_t at, LedgerRider* rider) {
   return true;
 }
 
+/// What the neighbours make of it by now, who know the motion, too.
+void GaussianEstimator::predict_last_said() const {
+  for (; last_said_at_ < stamp_; ++last_said_at_) {
+    for (Belief& said : last_said_) {
+      if (!said.omega.isZero(0.0)) said = gaussian::predict(said, options_.motion->step);
+    }
+  }
+}
+
 double GaussianEstimator::news_nats() const {
+  predict_last_said();
   double most = 0.0;
   for (std::size_t s = 0; s < own_.size(); ++s) {
     const Belief& now = own_[s].belief;

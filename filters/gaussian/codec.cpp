@@ -105,7 +105,7 @@ void encode(const Message& message, std::vector<std::byte>& out) {
 }
 
 void encode(const StampedMessage& message, std::vector<std::byte>& out) {
-  Writer writer = cdr::begin(8 + end_of_message(message.message), out);
+  Writer writer = cdr::begin(stamp_bytes + end_of_message(message.message), out);
   writer.u64(static_cast<std::uint64_t>(message.stamp));
   write(message.message, writer);
 }

@@ -50,7 +50,8 @@ void encode(const Message& message, std::vector<std::byte>& out);
 /// dimension_max, lengths that disagree. Numbers are taken as they are (also NaN).
 bool decode(std::span<const std::byte> bytes, Message& out);
 
-// The same for a message with a stamp, which takes 8 bytes more.
+// The same for a message with a stamp, which takes so many bytes more.
+inline constexpr std::size_t stamp_bytes = 8;
 void encode(const StampedMessage& message, std::vector<std::byte>& out);
 bool decode(std::span<const std::byte> bytes, StampedMessage& out);
 

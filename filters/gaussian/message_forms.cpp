@@ -1,7 +1,6 @@
 #include "filters/gaussian/message_forms.hpp"
 
-#include <algorithm>
-#include <array>
+#include <optional>
 
 #include "filters/gaussian/cdr.hpp"
 #include "sim/kernel/error.hpp"
@@ -49,7 +48,8 @@ class Counter {
  public:
   void octet(std::uint8_t) { ++offset_; }
   void u32(std::size_t) { offset_ = aligned(offset_, 4) + 4; }
-  void f64(double) { offset_ = aligned(offset_, 8) + 8; }
+  void f64(double) { u64(0); }
+  void u64(std::uint64_t) { offset_ = aligned(offset_, 8) + 8; }
   std::size_t size() const { return offset_; }
 
  private:
@@ -215,30 +215,26 @@ std::size_t encoded_size(MessageForm form, std::size_t beliefs, int n, int bits)
   return header.size() + counter.size();
 }
 
-void encode(MessageForm form, const Message& message, const MessageExtras& extras,
-            std::vector<std::byte>& out) {
-  if (form == MessageForm::plain) return encode(message, out);
-  const Fields fields = fields_of(form);
+namespace {
+
+void encode_behind(std::optional<std::int64_t> stamp, MessageForm form, const Message& message,
+                   const MessageExtras& extras, std::vector<std::byte>& out) {
+  const bool fresh = fields_of(form).fresh_matrix;
   const std::size_t count = message.beliefs.size();
-  require(!fields.fresh_matrix || extras.fresh.size() >= count, "encode: a fresh part is missing");
+  require(!fresh || extras.fresh.size() >= count, "encode: a fresh part is missing");
   require(form != MessageForm::quantised || extras.quantised.size() >= count,
           "encode: a quantised belief is missing");
   Counter counter;
+  if (stamp) counter.u64(0);
   write(counter, form, message, extras);
-  out.clear();
-  out.resize(header.size() + counter.size());  // padding is zero
-  std::copy(header.begin(), header.end(), out.begin());
-  Writer writer(out.data() + header.size());
+  Writer writer = cdr::begin(counter.size(), out);
+  if (stamp) writer.u64(static_cast<std::uint64_t>(*stamp));
   write(writer, form, message, extras);
 }
 
-bool decode(MessageForm form, std::span<const std::byte> bytes, Message& message,
-            MessageExtras& extras) {
-  if (form == MessageForm::plain) return decode(bytes, message);
-  if (bytes.size() < header.size()) return false;
-  if (!std::equal(header.begin(), header.end(), bytes.begin())) return false;
+/// All that follows a stamp, if there is one.
+bool read(Reader& in, MessageForm form, Message& message, MessageExtras& extras) {
   const Fields fields = fields_of(form);
-  Reader in(bytes.subspan(header.size()));
   if (!in.u32(message.incarnation) || !in.u32(message.count)) return false;
   if (fields.degree && !in.u32(extras.degree)) return false;
   if (form == MessageForm::quantised) return read_all_quantised(in, message, extras);
@@ -251,6 +247,36 @@ bool decode(MessageForm form, std::span<const std::byte> bytes, Message& message
     if (!read_entry(in, fields, message.beliefs[i], extras.fresh[i])) return false;
   }
   return in.left() == 0;
+}
+
+}  // namespace
+
+void encode(MessageForm form, const Message& message, const MessageExtras& extras,
+            std::vector<std::byte>& out) {
+  if (form == MessageForm::plain) return encode(message, out);
+  encode_behind(std::nullopt, form, message, extras, out);
+}
+
+void encode(MessageForm form, const StampedMessage& message, const MessageExtras& extras,
+            std::vector<std::byte>& out) {
+  if (form == MessageForm::plain) return encode(message, out);
+  encode_behind(message.stamp, form, message.message, extras, out);
+}
+
+bool decode(MessageForm form, std::span<const std::byte> bytes, Message& message,
+            MessageExtras& extras) {
+  if (form == MessageForm::plain) return decode(bytes, message);
+  std::optional<Reader> in = cdr::body_of(bytes);
+  return in && read(*in, form, message, extras);
+}
+
+bool decode(MessageForm form, std::span<const std::byte> bytes, StampedMessage& message,
+            MessageExtras& extras) {
+  if (form == MessageForm::plain) return decode(bytes, message);
+  std::optional<Reader> in = cdr::body_of(bytes);
+  if (!in || !in->has_f64(1)) return false;
+  message.stamp = in->i64();
+  return read(*in, form, message.message, extras);
 }
 
 }  // namespace hearsay::gaussian

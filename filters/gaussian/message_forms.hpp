@@ -11,7 +11,8 @@
 //               n times (octet exponent, long mean), unaligned, then the entries of N by rows,
 //               `bits` each, from the lowest bit of the first octet on
 //
-// Matrices are upper triangles by rows.
+// Matrices are upper triangles by rows. Of a moving state each of them stands behind a long long
+// stamp_ns, as in codec.hpp.
 #pragma once
 
 #include "filters/gaussian/codec.hpp"
@@ -39,6 +40,12 @@ void encode(MessageForm form, const Message& message, const MessageExtras& extra
 /// As decode() of codec.hpp. Also false for another number of bits than 4 to 16, and for quantised
 /// beliefs without a positive definite covariance.
 bool decode(MessageForm form, std::span<const std::byte> bytes, Message& message,
+            MessageExtras& extras);
+
+// The same for a message with a stamp, which takes stamp_bytes more.
+void encode(MessageForm form, const StampedMessage& message, const MessageExtras& extras,
+            std::vector<std::byte>& out);
+bool decode(MessageForm form, std::span<const std::byte> bytes, StampedMessage& message,
             MessageExtras& extras);
 
 }  // namespace hearsay::gaussian

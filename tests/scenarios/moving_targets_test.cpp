@@ -62,6 +62,40 @@ class MovingTargets : public InTempDirectory {
     }
     return values;
   }
+  // Sums of the scalars of a run over its agents.
+  std::map<std::string, double> sums(const std::shared_ptr<const PreparedScenario>& what) {
+    hearsay::Run run(what, catalog_, {.seed = 7});
+    const RunEnd end = run.run();
+    EXPECT_TRUE(end.ok()) << end.message;
+    std::map<std::string, double> sums;
+    for (const ScalarRow& row : run.record().scalars()) {
+      if (row.agent >= 0) sums[std::string(run.record().text(row.name))] += row.value;
+    }
+    return sums;
+  }
+  // Three agents under ci-det with 61 periods of talk each, who look until 12 s.
+  std::shared_ptr<const PreparedScenario> that_talk(const std::string& policy) {
+    std::string text = scenario;
+    text.replace(text.find("RULE"), 4, "ci-det");
+    text.replace(text.find("duration_s = 12"), 15, "duration_s = 30");
+    text.replace(text.find("series_period_s = 12"), 20, "series_period_s = 30");
+    text.replace(text.find("sensor = {"), 10, "sensor = { end_s = 12,");
+    return prepared(
+        text.replace(text.find("period_s = 2 }"), 14, "period_s = 0.5, " + policy + " }"));
+  }
+  // Agent 0 looks and speaks; 1 and 2 know what they hear alone.
+  std::shared_ptr<const PreparedScenario> one_that_says(const std::string& content) {
+    std::string text = scenario;
+    text.replace(text.find("RULE"), 4, "ci-det");
+    std::string listeners = text.substr(text.find("[[agents]]"));
+    const auto sensor = listeners.find("sensor");
+    listeners.erase(sensor, listeners.find("estimator") - sensor);
+    listeners.replace(listeners.find("count = 3"), 9, "count = 2");
+    listeners.replace(listeners.find("period_s = 2"), 12, "policy = \"never\", " + content);
+    text.replace(text.find("count = 3"), 9, "count = 1");
+    text.replace(text.find("period_s = 2 }"), 14, "period_s = 0.5, " + content + " }");
+    return prepared(text + listeners);
+  }
   std::string error(const std::string& from, const std::string& to) {
     std::string text = scenario;
     text.replace(text.find("RULE"), 4, "ci-det");
@@ -152,6 +186,55 @@ TEST_F(MovingTargets, OnALineTrajectoriesAreTheCentralFilterAndFiltersAreNot) {
   }
 }
 
+TEST_F(MovingTargets, EventTriggeredAgentsSpeakWhileOthersCannotPredictWhatTheyKnow) {
+  const std::string triggered = "policy = \"event-triggered\", divergence_nats = ";
+  const double always = sums(that_talk("policy = \"periodic\"")).at("packets");
+  const double often = sums(that_talk(triggered + "0.01")).at("packets");
+  const double seldom = sums(that_talk(triggered + "0.5")).at("packets");
+  EXPECT_GT(always, 3 * 59);
+  EXPECT_LT(often, 3 * 30);  // silent from 12 s on, though the belief fades
+  EXPECT_LT(seldom, often);
+  EXPECT_GE(seldom, 3 * 2);
+  auto values = last(that_talk(triggered + "0.01"), 7, 0);
+  EXPECT_GT(values.at("claimed_sigma_m"), 0.0);
+  EXPECT_TRUE(std::isnan(values.at("true_sigma_m")));  // sending depends on what was measured
+}
+
+TEST_F(MovingTargets, SmallerContentsCostLessAndClaimLess) {
+  const int runs = 200;
+  struct Heard {
+    double claimed_m = 0, nees = 0;
+    int exact = 0;
+  };
+  const auto heard = [&](const std::string& content, double bytes) {
+    const auto what = one_that_says(content);
+    const auto ended = sums(what);
+    EXPECT_GT(ended.at("packets"), 20) << content;
+    EXPECT_EQ(ended.at("bytes_sent"), ended.at("packets") * bytes) << content;
+    EXPECT_EQ(ended.at("messages_refused"), 0) << content;
+    Heard mean;
+    for (int seed = 1; seed <= runs; ++seed) {
+      auto values = last(what, static_cast<std::uint64_t>(seed), 1);
+      mean.claimed_m += values.at("claimed_sigma_m") / runs;
+      mean.nees += values.at("nees") / runs;
+      mean.exact += values.at("true_sigma_m") > 0.0 ? 1 : 0;
+    }
+    return mean;
+  };
+  const Heard whole = heard("content = \"belief\"", 156);
+  const Heard quantised = heard("content = \"quantised\", bits = 8", 66);
+  const Heard diagonal = heard("content = \"diagonal\"", 108);
+  EXPECT_LT(whole.claimed_m, quantised.claimed_m);
+  EXPECT_LT(quantised.claimed_m, diagonal.claimed_m);
+  EXPECT_EQ(whole.exact, runs);
+  EXPECT_EQ(diagonal.exact, runs);
+  EXPECT_EQ(quantised.exact, 0);
+  // The mean of n = 4 over the runs has the standard deviation √(2n/runs).
+  EXPECT_NEAR(whole.nees, 4.0, 4 * std::sqrt(8.0 / runs));
+  EXPECT_LT(quantised.nees, whole.nees);
+  EXPECT_LT(diagonal.nees, quantised.nees);
+}
+
 TEST_F(MovingTargets, OutOfRangeNothingIsSeen) {
   std::string text = scenario;
   text.replace(text.find("RULE"), 4, "none");
@@ -217,6 +300,35 @@ TEST_F(MovingTargets, WhatDoesNotGoTogetherIsRefused) {
   EXPECT_EQ(error("position_m = [0, 0]\nsensor = {", "sensor = { range_max_m = 5,"),
             "s.toml:20: agents[0].sensor.range_max_m: needs to know where the agent stands: "
             "position_m, circle or motion");
+}
+
+TEST_F(MovingTargets, WhatIsSaidGoesWithWhatIsBelieved) {
+  const std::string talk = "talk = { period_s = 2 }";
+  const std::string triggered = "talk = { policy = \"event-triggered\", divergence_nats = 0.1 }";
+  const std::string diagonal = "talk = { content = \"diagonal\" }";
+  const std::string filter =
+      "\"moving-gaussian\", fusion = \"ci-det\", acceleration_psd_m2_per_s3 = 0.4 }\n";
+  const std::string trajectory =
+      "\"trajectory-gaussian\", fusion = \"ci-det\", acceleration_psd_m2_per_s3 = 0.4 }\n";
+  EXPECT_EQ(error(talk, triggered), "no error");
+  EXPECT_EQ(error(talk, diagonal), "no error");
+  EXPECT_EQ(error(filter + talk, trajectory + "talk = { policy = \"on-update\" }"), "no error");
+  EXPECT_EQ(error(filter + talk, trajectory + triggered),
+            "s.toml:23: agents[0].talk.policy: \"event-triggered\" goes with kinds "
+            "\"static-gaussian\" and \"moving-gaussian\" alone; found \"trajectory-gaussian\"");
+  EXPECT_EQ(error(filter + talk, trajectory + diagonal),
+            "s.toml:23: agents[0].talk.content: \"diagonal\" goes with kinds \"static-gaussian\" "
+            "and \"moving-gaussian\" alone; found \"trajectory-gaussian\"");
+  for (const std::string rule : {"split-ci", "ci-batch", "consensus-information"}) {
+    EXPECT_EQ(error("\"ci-det\"", "\"" + rule + "\""),
+              "s.toml:22: agents[0].estimator.fusion: \"" + rule +
+                  "\" goes with kind \"static-gaussian\" alone; found \"moving-gaussian\"");
+  }
+  // A stamp, four means and ten entries.
+  EXPECT_EQ(error("latency_s = 0.7", "queue_bytes_max = 155"),
+            "s.toml:13: radio.queue_bytes_max = 155: smaller than one packet: a message of all "
+            "beliefs, or a summary, takes 156 bytes with headers");
+  EXPECT_EQ(error("latency_s = 0.7", "queue_bytes_max = 156"), "no error");
 }
 
 }  // namespace

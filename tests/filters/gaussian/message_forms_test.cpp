@@ -98,6 +98,43 @@ TEST(MessageForms, NoTruncatedOrLongerMessageIsOne) {
   }
 }
 
+TEST(MessageForms, OfAMovingStateAMessageStandsBehindAStamp) {
+  for (const MessageForm form : forms) {
+    for (int beliefs = 0; beliefs <= 2; ++beliefs) {
+      const Sample sent = sample(form, beliefs, 4, 6);
+      std::vector<std::byte> bytes, bare;
+      encode(form, sent.message, sent.extras, bare);
+      encode(form, StampedMessage{-5'000'000'000, sent.message}, sent.extras, bytes);
+      // Header, stamp as two's complement from its lowest octet on, and all else as it was.
+      ASSERT_EQ(bytes.size(), bare.size() + 8);
+      EXPECT_TRUE(std::equal(bare.begin(), bare.begin() + 4, bytes.begin()));
+      const int stamp[8] = {0x00, 0x0e, 0xfa, 0xd5, 0xfe, 0xff, 0xff, 0xff};
+      for (std::size_t i = 0; i < 8; ++i) EXPECT_EQ(bytes[4 + i], std::byte(stamp[i])) << i;
+      EXPECT_TRUE(std::equal(bare.begin() + 4, bare.end(), bytes.begin() + 12));
+
+      StampedMessage back;
+      MessageExtras extras;
+      ASSERT_TRUE(decode(form, bytes, back, extras));
+      EXPECT_EQ(back.stamp, -5'000'000'000);
+      EXPECT_EQ(back.message.count, 7u);
+      ASSERT_EQ(back.message.beliefs.size(), sent.message.beliefs.size());
+      for (std::size_t i = 0; i < sent.message.beliefs.size(); ++i) {
+        EXPECT_EQ(back.message.beliefs[i].subject, 2 * i);
+        EXPECT_EQ(back.message.beliefs[i].belief.omega, sent.message.beliefs[i].belief.omega);
+        EXPECT_EQ(back.message.beliefs[i].belief.xi, sent.message.beliefs[i].belief.xi);
+      }
+      for (std::size_t length = 0; length < bytes.size(); ++length) {
+        EXPECT_FALSE(decode(form, std::span(bytes).first(length), back, extras)) << length;
+      }
+      bytes.push_back(std::byte{0});
+      EXPECT_FALSE(decode(form, bytes, back, extras));
+      bytes.pop_back();
+      bytes[1] = std::byte{0};  // big-endian
+      EXPECT_FALSE(decode(form, bytes, back, extras));
+    }
+  }
+}
+
 TEST(MessageForms, AnotherNumberOfBitsIsRefused) {
   const Sample sent = sample(MessageForm::quantised, 1, 2);
   std::vector<std::byte> bytes;

@@ -12,17 +12,13 @@ using localization::Taken;
 
 constexpr Duration reckoning_step = 50_ms;
 
-Eigen::Matrix3d covariance_of(const localization::PoseFilter& filter) {
-  return filter.covariance(0);
-}
-
 Place position_of(const localization::PoseFilter& filter) {
   const localization::Pose& pose = filter.pose(0);
-  return {{pose.x_m, pose.y_m}, covariance_of(filter).topLeftCorner<2, 2>()};
+  return {{pose.x_m, pose.y_m}, filter.covariance(0).topLeftCorner<2, 2>()};
 }
 
 /// The position that a message is about; nothing unless it is one.
-std::optional<Place> place_of(const gaussian::Belief& belief) {
+std::optional<Place> place_in(const gaussian::Belief& belief) {
   if (belief.dimension() != 2) return std::nullopt;
   const auto mean = gaussian::state(belief);
   const auto covariance = gaussian::covariance(belief);
@@ -101,7 +97,7 @@ void LocalizerAgent::meet_companion(const Encounter& encounter, const RelativeSi
     place.covariance += moved_m * moved_m * Eigen::Matrix2d::Identity();
     count(localization::take_sighting(filter_, fusion(), place, seen));
   }
-  other.seen = localization::place_of(filter_.pose(0), covariance_of(filter_), seen);
+  other.seen = localization::place_of(filter_.pose(0), filter_.covariance(0), seen);
   other.seen_at = context().now();
 }
 
@@ -142,7 +138,7 @@ void LocalizerAgent::on_packet(const Packet& packet) {
       gaussian::decode(packet.bytes, message_) && message_.message.beliefs.size() == 1;
   const Time when = whole ? Time::nanoseconds(message_.stamp) : Time();
   const auto place =
-      whole ? place_of(message_.message.beliefs.front().belief) : std::optional<Place>();
+      whole ? place_in(message_.message.beliefs.front().belief) : std::optional<Place>();
   if (!place || when < Time() || when > context().now()) {
     ++counts_.refused;
     return;

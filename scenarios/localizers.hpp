@@ -20,7 +20,7 @@ std::vector<Journey> journeys_of(const mrclam::Dataset& log, Duration period, Ti
 
 std::vector<Eigen::Vector2d> landmarks_of(const mrclam::Dataset& log);
 
-/// Of the robots from `first` to `last`, by number. Central filters share the first one's numbers.
+/// Of the robots of these journeys, in their order, all with the noises of `spec`.
 localization::PoseFilter::Options pose_filter_options(const LocalizerSpec& spec,
                                                       std::span<const Journey> journeys);
 

@@ -37,7 +37,7 @@ std::size_t unused_landmarks(const mrclam::Robot& robot, const AgentSpec& spec, 
                     [&](const auto& seen) { return known && seen.landmark >= *known; }));
 }
 
-/// When the truth of the first robot ends, and whose that is.
+/// The robot whose truth ends first.
 const mrclam::Robot& first_to_end(const mrclam::Dataset& log) {
   return *std::min_element(log.robots.begin(), log.robots.end(), [](const auto& a, const auto& b) {
     return a.truth.back().time < b.truth.back().time;

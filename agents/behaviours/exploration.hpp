@@ -11,7 +11,6 @@
 // Neither finds an unknown patch beyond its view but by chance: that is what the horizon is for.
 #pragma once
 
-#include <array>
 #include <concepts>
 #include <cstdint>
 #include <type_traits>
@@ -55,8 +54,8 @@ class Exploration {
     /// view counts twice. A look repeated from one place counts once, for it tells less each time:
     /// the gain of staying is that of one look, whatever the horizon.
     int horizon = 1;
-    /// alpha and beta of eq. 4.24, ≥ 0, finite. The cost of a move is the length in cells of the
-    /// line along which it is judged (a diagonal step has √2) + |turn|/π; staying costs 0.
+    /// alpha and beta of eq. 4.24, ≥ 0, finite. The cost of a move is its length in cells (√2 from
+    /// corner to corner), whatever the horizon, + |turn|/π; staying costs 0.
     grid::MoveWeights weights;
   };
 
@@ -95,25 +94,15 @@ class Exploration {
   const Options& options() const { return options_; }
 
  private:
-  /// A way to go on, and the change of place that each step along it makes.
-  struct Way {
-    State first;  ///< after one step
-    double dx_m, dy_m;
-    double step_cells;  ///< length of a step
-    double turn_rad;    ///< ≥ 0
-  };
-  /// The ways there are, without staying.
-  struct Ways {
-    std::array<Way, headings_max> list;
-    int count = 0;
-  };
+  struct Way;
+  struct Ways;
 
-  Ways holonomic_ways(const State& here) const;
-  Ways forward_ways(const State& here) const;
-  State turned(const State& here, double turn_rad) const;
+  Ways around(const State& here) const;
+  Ways ahead(const State& here) const;
+  Way turned(const State& here, double turn_rad) const;
   State towards_centre(const State& here) const;
   grid::Move judged(const Way& way, const Gain& gain) const;
-  State best(const State& here, const Ways& ways, const Gain& gain, Stream& draws) const;
+  State best(const Ways& ways, const Gain& gain, Stream& draws) const;
 
   Options options_;
   grid::Area area_;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "filters/grid/footprint.hpp"
 #include "sim/kernel/error.hpp"
 #include "sim/math/functions.hpp"
 
@@ -102,6 +101,19 @@ class Walk {
   double weight_ = 0.0, right_ = 0.0, down_ = 0.0;
 };
 
+void require_camera(const GridCamera& camera) {
+  require(camera.lens.focal_u > 0.0 && camera.lens.focal_v > 0.0,
+          "GridCamera: focal lengths are positive");
+  require(camera.width >= 1 && camera.width <= SegmentedImage::side_max && camera.height >= 1 &&
+              camera.height <= SegmentedImage::side_max,
+          "GridCamera: sides of the image are 1 to 4096");
+  require(camera.range_max_m > 0.0 && std::isfinite(camera.range_max_m),
+          "GridCamera: the range is positive");
+  require(camera.sigma_pixel >= 0.5 && std::isfinite(camera.sigma_pixel),
+          "GridCamera: a pixel's place is blurred by at least half a pixel");
+  faded(camera.detector, 0.0);
+}
+
 }  // namespace
 
 SegmentedImage::SegmentedImage(int width, int height) : width_(width), height_(height) {
@@ -165,26 +177,57 @@ std::optional<double> marked_share(const SegmentedImage& image, const PixelEllip
   return std::min(1.0, marked / all);
 }
 
+Footprint ground_in_image(const GridCamera& camera, const CameraPose& pose, double margin_m) {
+  const auto reach_m = reach(pose.position_m(2) - camera.ground_m, camera.range_max_m);
+  if (!reach_m) return {};
+  const gaussian::Intrinsics& k = camera.lens;
+  const double right = camera.width - 0.5, low = camera.height - 0.5;
+  const std::array<Vector3, 5> walls = {
+      Vector3(0.0, 0.0, 1.0),                            // ahead
+      Vector3(k.focal_u, k.skew, k.center_u + 0.5),      // u ≥ −½
+      Vector3(-k.focal_u, -k.skew, right - k.center_u),  // u ≤ width − ½
+      Vector3(0.0, k.focal_v, k.center_v + 0.5),         // and so v
+      Vector3(0.0, -k.focal_v, low - k.center_v)};
+  Footprint ground =
+      Footprint::around({pose.position_m(0), pose.position_m(1)}, *reach_m + margin_m);
+  for (const Vector3& wall : walls) {
+    const Vector3 inward = pose.axes * wall;
+    // The margin is along the plane. A wall that is level has none: it cuts all or nothing.
+    const double level = std::sqrt(inward(0) * inward(0) + inward(1) * inward(1));
+    const double out = level > 0.0 ? margin_m / level : 0.0;
+    ground.cut(pose.position_m - out * Vector3(inward(0), inward(1), 0.0), inward, camera.ground_m);
+  }
+  return ground;
+}
+
+void cells_in_view(const GridCamera& camera, const CameraPose& pose, const Area& area,
+                   std::vector<CellInView>& out) {
+  require_camera(camera);
+  require(pose.position_m.allFinite() && pose.axes.allFinite(), "GridCamera: a pose is finite");
+  out.clear();
+  const double right = camera.width - 0.5, low = camera.height - 0.5;
+  const Matrix3 homography = homography_of(camera.lens, pose, camera.ground_m);
+  for_each_cell(ground_in_image(camera, pose), area, [&](int cell) {
+    const Point at = area.centre(cell);
+    const auto pixel = pixel_of(homography, at);
+    if (!pixel || !(pixel->u >= -0.5 && pixel->u < right)) return;
+    if (!(pixel->v >= -0.5 && pixel->v < low)) return;
+    const Vector3 to = Vector3(at.x_m, at.y_m, camera.ground_m) - pose.position_m;
+    const double rho = to.dot(to) / (camera.range_max_m * camera.range_max_m);
+    if (rho < 1.0) out.push_back({cell, faded(camera.detector, rho)});
+  });
+}
+
 CameraLook::CameraLook(const GridCamera& camera, const Area& area) : camera_(camera), area_(area) {
-  require(camera.lens.focal_u > 0.0 && camera.lens.focal_v > 0.0,
-          "GridCamera: focal lengths are positive");
-  require(camera.width >= 1 && camera.width <= SegmentedImage::side_max && camera.height >= 1 &&
-              camera.height <= SegmentedImage::side_max,
-          "GridCamera: sides of the image are 1 to 4096");
-  require(camera.range_max_m > 0.0 && std::isfinite(camera.range_max_m),
-          "GridCamera: the range is positive");
-  require(camera.sigma_pixel >= 0.5 && std::isfinite(camera.sigma_pixel),
-          "GridCamera: a pixel's place is blurred by at least half a pixel");
-  faded(camera.detector, 0.0);
+  require_camera(camera);
 }
 
 bool CameraLook::look(const CameraPose& pose, const Matrix& covariance) {
   require(covariance.rows() == 6 && covariance.cols() == 6,
           "CameraLook: the covariance of a pose is 6×6");
-  require(pose.position_m.allFinite() && pose.axes.allFinite(), "CameraLook: a pose is finite");
   in_view_.clear();
   if (!set_samples(pose, covariance)) return false;
-  find_cells(pose);
+  cells_in_view(camera_, pose, area_, in_view_);
   return true;
 }
 
@@ -203,31 +246,6 @@ bool CameraLook::set_samples(const CameraPose& pose, const Matrix& covariance) {
     samples_[i] = {homography_of(camera_.lens, moved, camera_.ground_m), points->weights[i]};
   }
   return true;
-}
-
-void CameraLook::find_cells(const CameraPose& pose) {
-  const auto reach_m = reach(pose.position_m(2) - camera_.ground_m, camera_.range_max_m);
-  if (!reach_m) return;
-  const gaussian::Intrinsics& k = camera_.lens;
-  const double right = camera_.width - 0.5, low = camera_.height - 0.5;
-  Footprint ground = Footprint::around({pose.position_m(0), pose.position_m(1)}, *reach_m);
-  const std::array<Vector3, 5> walls = {
-      Vector3(0.0, 0.0, 1.0),                            // ahead
-      Vector3(k.focal_u, k.skew, k.center_u + 0.5),      // u ≥ −½
-      Vector3(-k.focal_u, -k.skew, right - k.center_u),  // u ≤ width − ½
-      Vector3(0.0, k.focal_v, k.center_v + 0.5),         // and so v
-      Vector3(0.0, -k.focal_v, low - k.center_v)};
-  for (const Vector3& wall : walls) ground.cut(pose.position_m, pose.axes * wall, camera_.ground_m);
-  const Matrix3 homography = homography_of(k, pose, camera_.ground_m);
-  for_each_cell(ground, area_, [&](int cell) {
-    const Point at = area_.centre(cell);
-    const auto pixel = pixel_of(homography, at);
-    if (!pixel || !(pixel->u >= -0.5 && pixel->u < right)) return;
-    if (!(pixel->v >= -0.5 && pixel->v < low)) return;
-    const Vector3 to = Vector3(at.x_m, at.y_m, camera_.ground_m) - pose.position_m;
-    const double rho = to.dot(to) / (camera_.range_max_m * camera_.range_max_m);
-    if (rho < 1.0) in_view_.push_back({cell, faded(camera_.detector, rho)});
-  });
 }
 
 std::optional<PixelEllipse> CameraLook::ellipse(int cell) const {

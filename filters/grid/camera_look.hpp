@@ -16,6 +16,7 @@
 
 #include "filters/gaussian/camera.hpp"
 #include "filters/gaussian/propagation.hpp"
+#include "filters/grid/footprint.hpp"
 #include "filters/grid/sensors.hpp"
 
 namespace hearsay::grid {
@@ -76,6 +77,17 @@ struct GridCamera {
   bool cells_have_extent = true;  ///< adds the variance of a point in its cell, cell²/12 an axis
 };
 
+/// What of the plane is in the image and nearer than range_max_m (squared off), and `margin_m` ≥ 0
+/// more on every side; nothing unless the camera is above the plane and it within reach.
+Footprint ground_in_image(const GridCamera& camera, const gaussian::CameraPose& pose,
+                          double margin_m = 0.0);
+
+/// The cells with centres in the image and nearer than range_max_m, rising, with P_D and P_F at
+/// their distance: costs as much as there are of these. `out` is overwritten, its storage reused.
+/// @throws BrokenInvariant outside the ranges above, or for a pose that is not finite.
+void cells_in_view(const GridCamera& camera, const gaussian::CameraPose& pose, const Area& area,
+                   std::vector<CellInView>& out);
+
 /// A look from one place: which cells are in view, and where in the image they are. Reused from
 /// look to look it allocates nothing once warm.
 class CameraLook {
@@ -84,13 +96,12 @@ class CameraLook {
   CameraLook(const GridCamera& camera, const Area& area);
 
   /// Takes a pose, believed to be off by a position (3, m, world) and a small rotation (3, rad,
-  /// about the camera's axes) of this covariance (6×6). Finds the cells with centres in the
-  /// image and nearer than range_max_m: costs as much as there are of these. False, with nothing
-  /// in view, if the covariance is indefinite or not finite. @throws BrokenInvariant for another
-  /// shape.
+  /// about the camera's axes) of this covariance (6×6), and finds the cells in view. False, with
+  /// nothing in view, if the covariance is indefinite or not finite. @throws BrokenInvariant for
+  /// another shape.
   bool look(const gaussian::CameraPose& pose, const gaussian::Matrix& covariance);
 
-  /// Rising. P_D and P_F are those at the cell's distance.
+  /// As by cells_in_view().
   std::span<const CellInView> in_view() const { return in_view_; }
 
   /// Nothing if a sigma point has the cell behind it.
@@ -109,7 +120,6 @@ class CameraLook {
   };
   static constexpr int dimension = 8;
   bool set_samples(const gaussian::CameraPose& pose, const gaussian::Matrix& covariance);
-  void find_cells(const gaussian::CameraPose& pose);
 
   GridCamera camera_;
   Area area_;

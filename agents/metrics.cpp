@@ -24,10 +24,13 @@ constexpr std::array kMetrics = {
     MetricInfo{"ledger_nees", kSeries, kMean, true,
                "eᵀP⁻¹e: error against the ledger's true covariance, χ² with n degrees of freedom"},
     MetricInfo{"kl_to_central_nats", kSeries, kMean, false,
-               "D(central ‖ local): divergence from the central filter, nats"},
+               "D(central ‖ local): divergence from the central filter, nats; of grids summed over "
+               "cells"},
     MetricInfo{"hellinger_to_central", kSeries, kMean, false,
                "√(1 − ∫√(pq)): Hellinger distance from the central filter, 0 if equal, at most 1"},
-    MetricInfo{"entropy_nats", kSeries, kMean, false, "differential entropy of the belief, nats"},
+    MetricInfo{"entropy_nats", kSeries, kMean, false,
+               "differential entropy of the belief, nats; of grids summed over cells, of Bernoulli "
+               "grids the discrete one"},
     MetricInfo{"multiplicity_mean", kSeries, kMean, true,
                "how often the average measurement in the belief is counted"},
     MetricInfo{"multiplicity_max", kSeries, kMean, true, "how often the most repeated one is"},
@@ -61,6 +64,28 @@ constexpr std::array kMetrics = {
                "of a tracker: tracks with no target nearer than the cut-off"},
     MetricInfo{"double_tracks", kSeries, kMean, false,
                "of a tracker: second and further tracks of a target"},
+    MetricInfo{"alarms_detected_share", kSeries, kMean, false,
+               "of an explorer, for each threshold: share of the targets nearer than "
+               "record.alarms.gate_m to an alarm of their own"},
+    MetricInfo{"alarms_false", kSeries, kMean, false,
+               "of an explorer, for each threshold: alarms without such a target"},
+    MetricInfo{"alarm_error_m", kSeries, kMean, false,
+               "of an explorer, for each threshold: root mean square distance of targets and their "
+               "alarms, m; missing without any"},
+    MetricInfo{"cells_detected_share", kSeries, kMean, false,
+               "of an explorer, for each threshold: share of the cells with a target that are over "
+               "it (P_D of an operating curve)"},
+    MetricInfo{"cells_false_share", kSeries, kMean, false,
+               "of an explorer, for each threshold: share of the cells without one that are over "
+               "it (P_F)"},
+    MetricInfo{"cells_hearsay", kSeries, kMean, false,
+               "of an explorer, for each threshold: cells that are over it here and not in the "
+               "central grid, which has every look: alarms of hearsay alone"},
+    MetricInfo{"disagreement_probability", kSeries, kMean, false,
+               "of agent −1: largest difference of any two explorers' probabilities, mean over "
+               "cells"},
+    MetricInfo{"place_x_m", kSeries, kMean, false, "of an explorer: where it is, m"},
+    MetricInfo{"place_y_m", kSeries, kMean, false, "the same along y, m"},
     MetricInfo{"anees", MetricTable::derived, kMean, false,
                "mean of nees over repetitions, divided by n"},
     MetricInfo{"bytes_per_m_saved", MetricTable::derived, kMean, false,
@@ -104,6 +129,18 @@ constexpr std::array kMetrics = {
                "of a localizer: eᵀP⁻¹e/3 of its pose, mean over samples, 1 if consistent"},
     MetricInfo{"outside_gate", kScalar, kMean, false,
                "by a localizer: what it saw or heard and took for an outlier"},
+    MetricInfo{
+        "alarms_found_s", kScalar, Aggregate::median, false,
+        "of an explorer: first sample with an alarm at every target, at the first threshold, "
+        "s; infinite if there is none; of agent −1: of the central grid"},
+    MetricInfo{"cells_seen_share", kScalar, kMean, false,
+               "of an explorer: share of the cells that it looked at itself; of agent −1: that "
+               "anybody did"},
+    MetricInfo{"agents_a_cell", kScalar, kMean, false,
+               "of agent −1: how many explorers looked at a cell, mean over cells that were looked "
+               "at: 1 if nobody goes where another was"},
+    MetricInfo{"distance_flown_m", kScalar, kMean, false,
+               "of an explorer: straight from look to look, m"},
     MetricInfo{"looks_missed", kScalar, kMean, false,
                "by cameras: looks past the ground, or whose covariance was none"},
     MetricInfo{"look_sigma_along_m", kScalar, kMean, false,

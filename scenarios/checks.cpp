@@ -26,6 +26,7 @@ class Checker {
     check_talk(file_);
     check_motion(file_);
     check_localizers(file_);
+    check_explorers(file_);
     check_estimators(file_);
     check_sensors(file_);
     check_trackers(file_);
@@ -110,7 +111,9 @@ void Checker::check_targets() {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < s_.world.targets.size(); ++i) {
     TargetSpec& target = s_.world.targets[i];
-    if (!target.position_m && !target.motion) fail(targets[i]["position_m"], "missing");
+    const bool anywhere = s_.world.area.has_value();
+    if (!target.position_m && !target.motion && !anywhere)
+      fail(targets[i]["position_m"], "missing");
     if (target.name.empty()) target.name = "target" + std::to_string(i);
     names.push_back(target.name);
   }

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "filters/gaussian/fusion.hpp"
+#include "scenarios/describe_explorer.hpp"
 #include "scenarios/describe_localizer.hpp"
 #include "scenarios/describe_motion.hpp"
 #include "scenarios/describe_radio.hpp"
@@ -36,7 +37,8 @@ inline std::vector<std::string> service_names() {
 template <class V>
 void describe(V& v, TargetSpec& s) {
   v.field("name", s.name, anything(), "its name in records; default target<i>");
-  v.field("position_m", s.position_m, anything(), "where it is, or begins: 2 coordinates");
+  v.field("position_m", s.position_m, anything(),
+          "where it is, or begins: 2 coordinates; default in a world with an area: anywhere in it");
   v.table("motion", s.motion, "how it moves; default: it stands still");
 }
 
@@ -60,6 +62,7 @@ void describe(V& v, WorldSpec& s) {
           "agents look at targets and believe in them at multiples of this; default: targets stand "
           "still");
   v.table("log", s.log, "a recorded data set instead of targets and synthetic sensors");
+  v.table("area", s.area, "the cells that agents of kind explorer have grids of");
 }
 
 template <class V>
@@ -70,8 +73,11 @@ void describe(V& v, CircleSpec& s) {
 
 template <class V>
 void describe(V& v, SensorSpec& s) {
-  v.field("kind", s.kind, one_of({"none", "position", "range-bearing", "camera", "scan", "log"}),
-          "what is measured");
+  v.field("kind", s.kind,
+          one_of({"none", "position", "range-bearing", "camera", "scan", "log", "segmented-camera",
+                  "presence"}),
+          "what is measured; of explorers \"segmented-camera\", an image whose pixels a detector "
+          "judged, or \"presence\", whether something is in view at all");
   v.field("period_s", s.period_s, time_span(false), "time between looks");
   v.field("start_s", s.start_s, time_span(true), "first look");
   v.field("end_s", s.end_s, time_span(true), "no look after; default: the end of the run");
@@ -80,13 +86,26 @@ void describe(V& v, SensorSpec& s) {
           "position, scan: noise along the line of sight, instead of sigma_m");
   v.field("sigma_across_m", s.sigma_across_m, greater_than_zero(),
           "position, scan: noise across the line of sight, with sigma_along_m");
-  v.field("range_max_m", s.range_max_m, greater_than_zero(),
-          "position, range-bearing, camera, scan: what is farther away in the plane is not seen; "
-          "default: no limit");
+  v.field(
+      "range_max_m", s.range_max_m, greater_than_zero(),
+      "position, range-bearing, camera, scan: what is farther away in the plane is not seen; "
+      "default: no limit. Of explorers: the range at which a look tells nothing any more; needed");
   v.field("detection_probability", s.detection_probability, between(0.0, 1.0),
           "scan: of a target within range; default 1");
   v.field("false_alarms_per_km2", s.false_alarms_per_km2, at_least(0.0),
           "scan: mean number of plots of nothing in each square kilometre within range; default 0");
+  v.field("detector", s.detector, one_of(detector_names()),
+          "segmented-camera, presence: a detector of known quality, instead of the next two");
+  v.field("p_detect", s.p_detect, between(1e-6, 1.0 - 1e-6),
+          "segmented-camera, presence: probability that it sees what is there, at distance 0");
+  v.field("p_false", s.p_false, between(1e-6, 1.0 - 1e-6),
+          "segmented-camera, presence: … and what is not");
+  v.field("depression_rad", s.depression_rad, between(0.01, 1.5707963267948966),
+          "segmented-camera, presence: how far below the horizon it looks; default straight down");
+  v.field("angle_max_rad", s.angle_max_rad, above_zero_to(3.1415926535897931),
+          "presence: half the opening angle of its view");
+  v.field("image_px", s.image_px, greater_than_zero(),
+          "segmented-camera: width and height; default 240, 320");
   v.field("sigma_range_m", s.sigma_range_m, greater_than_zero(),
           "log, range-bearing: noise of the range");
   v.field("sigma_bearing_rad", s.sigma_bearing_rad, greater_than_zero(),
@@ -94,14 +113,14 @@ void describe(V& v, SensorSpec& s) {
   v.field("sigma_heading_rad", s.sigma_heading_rad, at_least(0.0),
           "log, range-bearing: uncertainty of the own heading");
   v.field("sigma_position_m", s.sigma_position_m, at_least(0.0),
-          "log, range-bearing, camera: uncertainty of the own position, per axis");
+          "log, range-bearing, cameras: uncertainty of the own position, per axis");
   v.field("sigma_attitude_rad", s.sigma_attitude_rad, at_least(0.0),
-          "camera: uncertainty of the attitude, about each of its axes");
+          "cameras: uncertainty of the attitude, about each of its axes");
   v.field("sigma_pixel", s.sigma_pixel, greater_than_zero(),
-          "camera: noise of the pixel, per axis");
+          "cameras: noise of the pixel, per axis");
   v.field("focal_px", s.focal_px, greater_than_zero(),
-          "camera: focal lengths across and down the image");
-  v.field("center_px", s.center_px, anything(), "camera: pixel of the axis of view");
+          "cameras: focal lengths across and down the image");
+  v.field("center_px", s.center_px, anything(), "cameras: pixel of the axis of view");
   v.field("propagation", s.propagation, one_of({"unscented", "linearised", "monte-carlo"}),
           "camera: how errors of pose and pixel become one on the ground");
   v.field("kappa", s.kappa, between(-7.5, 100.0),
@@ -184,6 +203,9 @@ void describe(V& v, AgentSpec& s) {
   v.table("estimator", s.estimator, "what it believes");
   v.table("tracker", s.tracker, "how an agent of kind tracker finds and keeps targets");
   v.table("localizer", s.localizer, "how a robot of kind localizer finds its own pose");
+  v.table("grid", s.grid, "what an agent of kind explorer believes of the area");
+  v.table("exploration", s.exploration,
+          "where an explorer with motion.kind = \"steered\" goes; default: as its motion says");
   v.table("talk", s.talk, "what it says when");
   v.table("traffic", s.traffic, "what a source sends; default: nothing, it listens");
   v.field("parameters", s.parameters, anything(), "numbers for agents of a user's program");
@@ -203,10 +225,12 @@ void describe(V& v, RecordSpec& s) {
   v.field("series", s.series, one_of_if_known(v.names().metrics), "metrics kept over time");
   v.field("series_period_s", s.series_period_s, time_span(false), "time between samples");
   v.table("tracks", s.tracks, "how tracks are compared with targets");
+  v.table("alarms", s.alarms, "how alarms of explorers are judged");
   v.table("agreement", s.agreement, "how long it takes until all agree (agree_again_s)");
   v.field("messages", s.messages, one_of({"all", "counts"}), "each packet's fate, or sums only");
   v.field("links", s.links, one_of({"on", "off"}), "how many packets met which fate on each link");
   v.field("ledger", s.ledger, one_of({"on", "off"}), "how often measurements were counted");
+  v.field("grids", s.grids, one_of({"on", "off"}), "every cell of every grid at the end");
 }
 
 template <class V>

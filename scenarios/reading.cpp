@@ -226,6 +226,15 @@ void read(const TomlNode& node, const KeyPath& path, const Allowed& allowed,
   if (value.size() != 2) reject(node, path, "must have 2 coordinates");
 }
 
+void read(const TomlNode& node, const KeyPath& path, const Allowed& allowed, NumberList& value) {
+  expect_array(node, path, "an array of numbers");
+  value.values.assign(node.children.size(), 0.0);
+  for (std::size_t i = 0; i < value.values.size(); ++i) {
+    read(node.children[i], path[i], allowed, value.values[i]);
+  }
+  if (value.values.empty()) reject(node, path, "must have at least one number");
+}
+
 void read(const TomlNode& node, const KeyPath& path, const Allowed& allowed,
           std::vector<std::string>& value) {
   expect_array(node, path, "an array of strings");

@@ -14,6 +14,7 @@
 
 #include "scenarios/channel_spec.hpp"
 #include "scenarios/document.hpp"
+#include "scenarios/explorer_spec.hpp"
 
 namespace hearsay {
 
@@ -72,6 +73,8 @@ void read(const TomlNode& node, const KeyPath& path, const Allowed& allowed,
 /// Two coordinates.
 void read(const TomlNode& node, const KeyPath& path, const Allowed& allowed,
           std::vector<double>& value);
+/// Numbers, at least one.
+void read(const TomlNode& node, const KeyPath& path, const Allowed& allowed, NumberList& value);
 /// Names, none twice.
 void read(const TomlNode& node, const KeyPath& path, const Allowed& allowed,
           std::vector<std::string>& value);

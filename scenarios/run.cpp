@@ -5,6 +5,7 @@
 
 #include "scenarios/channel.hpp"
 #include "scenarios/estimators.hpp"
+#include "scenarios/explorers.hpp"
 #include "scenarios/localizers.hpp"
 #include "scenarios/logs.hpp"
 #include "scenarios/network.hpp"
@@ -158,6 +159,11 @@ void Run::build_agents(const Catalog& catalog) {
     targets_ = target_truths_of(scenario, prepared_->end, simulation_.seed());
     track_witness_ = make_track_witness(scenario, simulation_, targets_);
   }
+  if (has_explorers(scenario)) {
+    record.agent(central_agent, "central", "central");
+    grid_witness_ = make_grid_witness(scenario, simulation_,
+                                      [this](AgentId id) { return radio_->position(id); });
+  }
   if (has_localizers(scenario)) pose_witness_ = make_pose_witness(*prepared_, simulation_);
   for (std::size_t i = 0; i < prepared_->specs.size(); ++i) {
     const AgentSpec& spec = *prepared_->specs[i];
@@ -195,6 +201,7 @@ std::unique_ptr<Agent> Run::make_agent(AgentId id, const Catalog& catalog) {
   if (spec.kind == "estimator") return make_estimator(id);
   if (spec.kind == "tracker") return make_tracker(id);
   if (spec.kind == "localizer") return make_localizer(id);
+  if (spec.kind == "explorer") return make_explorer(id);
   std::optional<SourceTraffic> traffic;
   if (spec.traffic) traffic = traffic_of(*spec.traffic, id, simulation_.seed());
   return std::make_unique<SourceAgent>(*contexts_[i], traffic);
@@ -246,6 +253,16 @@ std::unique_ptr<Agent> Run::make_localizer(AgentId id) {
   return std::make_unique<LocalizerAgent>(*contexts_[i], *pose_witness_, std::move(options));
 }
 
+std::unique_ptr<Agent> Run::make_explorer(AgentId id) {
+  const AgentSpec& spec = *prepared_->specs[static_cast<std::size_t>(id)];
+  ExplorerAgent::Options options = explorer_options(spec, prepared_->scenario.world);
+  if (spec.talk.policy == "periodic") options.talk = talk_of(id);
+  auto agent = std::make_unique<ExplorerAgent>(*contexts_[static_cast<std::size_t>(id)],
+                                               *grid_witness_, options);
+  grid_witness_->watch(id, agent->estimator());
+  return agent;
+}
+
 PeriodicTalk Run::talk_of(AgentId id) const {
   const TalkSpec& talk = prepared_->specs[static_cast<std::size_t>(id)]->talk;
   const Duration period = Duration::seconds(talk.period_s);
@@ -261,6 +278,7 @@ RunEnd Run::run() {
     if (witness_) witness_->start();
     if (track_witness_) track_witness_->start();
     if (pose_witness_) pose_witness_->start();
+    if (grid_witness_) grid_witness_->start();
     if (life_) life_->start();
     for (std::size_t i = 0; i < agents_.size(); ++i) {
       simulation_.acting_for(static_cast<AgentId>(i));
@@ -293,6 +311,7 @@ void Run::keep_record_only() {
   witness_.reset();
   track_witness_.reset();
   pose_witness_.reset();
+  grid_witness_.reset();
 }
 
 void Run::leave_final_values() {
@@ -300,6 +319,7 @@ void Run::leave_final_values() {
   if (witness_) witness_->finish();
   if (track_witness_) track_witness_->finish();
   if (pose_witness_) pose_witness_->finish();
+  if (grid_witness_) grid_witness_->finish();
   radio_->finish();
   record_radio();
   record_links();

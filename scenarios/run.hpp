@@ -12,6 +12,7 @@
 
 #include "agents/catalog.hpp"
 #include "agents/estimator_agent.hpp"
+#include "agents/grids/grid_witness.hpp"
 #include "agents/localizer_agent.hpp"
 #include "agents/pose_witness.hpp"
 #include "agents/source_agent.hpp"
@@ -82,6 +83,7 @@ class Run {
   std::unique_ptr<Agent> make_estimator(AgentId id);
   std::unique_ptr<Agent> make_tracker(AgentId id);
   std::unique_ptr<Agent> make_localizer(AgentId id);
+  std::unique_ptr<Agent> make_explorer(AgentId id);
   PeriodicTalk talk_of(AgentId id) const;
   void leave_final_values();
   void record_radio();
@@ -94,6 +96,7 @@ class Run {
   std::vector<TargetTruth> targets_;             // of this run, for trackers
   std::unique_ptr<TrackWitness> track_witness_;  // null without trackers
   std::unique_ptr<PoseWitness> pose_witness_;    // null without localizers
+  std::unique_ptr<GridWitness> grid_witness_;    // null without explorers
   std::unique_ptr<Witness> witness_;             // owns the riders of packets in flight
   std::unique_ptr<AgentPaths> paths_;            // null if nobody moves, and so the next two
   std::unique_ptr<Places> places_;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/explorer_spec.hpp"
 #include "scenarios/localizer_spec.hpp"
 #include "scenarios/motion_spec.hpp"
 #include "scenarios/radio_spec.hpp"
@@ -17,9 +18,10 @@
 namespace hearsay {
 
 struct TargetSpec {
-  std::string name;                               ///< default "target<i>"
-  std::optional<std::vector<double>> position_m;  ///< 2 coordinates; where it begins if it moves
-  std::optional<MotionSpec> motion;               ///< none: it stands still
+  std::string name;  ///< default "target<i>"
+  /// 2 coordinates; where it begins if it moves; none in a world with an area: anywhere in it
+  std::optional<std::vector<double>> position_m;
+  std::optional<MotionSpec> motion;  ///< none: it stands still
 };
 
 /// A recorded data set that takes the place of synthetic sensors.
@@ -37,6 +39,7 @@ struct WorldSpec {
   /// still
   std::optional<double> step_s;
   std::optional<LogSpec> log;
+  std::optional<AreaSpec> area;  ///< what explorers explore
 };
 
 struct CircleSpec {
@@ -45,7 +48,8 @@ struct CircleSpec {
 };
 
 struct SensorSpec {
-  /// "none" | "position" | "range-bearing" | "camera" | "scan" | "log"
+  /// "none" | "position" | "range-bearing" | "camera" | "scan" | "log"; of explorers
+  /// "segmented-camera" | "presence"
   std::string kind = "none";
   double period_s = 1.0;                 ///< > 0
   double start_s = 0.0;                  ///< first look, ≥ 0
@@ -58,14 +62,20 @@ struct SensorSpec {
   std::optional<double> detection_probability;
   /// scan: mean number in each square kilometre within range, ≥ 0; default 0
   std::optional<double> false_alarms_per_km2;
-  double sigma_range_m = 0.15;       ///< log, range-bearing; > 0
-  double sigma_bearing_rad = 0.08;   ///< log, range-bearing; > 0
-  double sigma_heading_rad = 0.03;   ///< log, range-bearing: pose, ≥ 0
-  double sigma_position_m = 0.05;    ///< the same and camera: pose, per axis, ≥ 0
-  double sigma_attitude_rad = 0.02;  ///< camera: pose, about each axis, ≥ 0
-  double sigma_pixel = 1.0;          ///< camera: per axis, > 0
-  std::vector<double> focal_px = {347.881, 345.876};   ///< camera: focal lengths, > 0
-  std::vector<double> center_px = {119.512, 161.781};  ///< camera: where the view's axis is
+  std::optional<std::string> detector;  ///< explorers: a name of grid::detectors(), or …
+  std::optional<double> p_detect;       ///< … its probabilities, both in (0, 1)
+  std::optional<double> p_false;
+  std::optional<double> depression_rad;         ///< explorers: 0.01 … π/2; none: straight down
+  std::optional<double> angle_max_rad;          ///< presence, which needs it: > 0, at most π
+  std::optional<std::vector<double>> image_px;  ///< segmented-camera: none: 240, 320
+  double sigma_range_m = 0.15;                  ///< log, range-bearing; > 0
+  double sigma_bearing_rad = 0.08;              ///< log, range-bearing; > 0
+  double sigma_heading_rad = 0.03;              ///< log, range-bearing: pose, ≥ 0
+  double sigma_position_m = 0.05;               ///< the same and cameras: pose, per axis, ≥ 0
+  double sigma_attitude_rad = 0.02;             ///< both cameras: pose, about each axis, ≥ 0
+  double sigma_pixel = 1.0;                     ///< both cameras: per axis, > 0
+  std::vector<double> focal_px = {347.881, 345.876};   ///< cameras: focal lengths, > 0
+  std::vector<double> center_px = {119.512, 161.781};  ///< cameras: where the view's axis is
   std::string propagation = "unscented";               ///< camera: | "linearised" | "monte-carlo"
   std::optional<double> kappa;         ///< camera, "unscented": −7.5 … 100; default −5
   int draws = 1000;                    ///< camera, "monte-carlo": 2 … 16000
@@ -112,9 +122,10 @@ struct TrafficSpec {
 };
 
 struct AgentSpec {
-  std::string name;                ///< default "<kind><i>"; with count > 1 a number is appended
-  std::string kind = "estimator";  ///< "tracker", "localizer", "source", or a program's own
-  int count = 1;                   ///< 1 … 1e6
+  std::string name;  ///< default "<kind><i>"; with count > 1 a number is appended
+  /// "estimator" | "tracker" | "localizer" | "explorer" | "source", or a program's own
+  std::string kind = "estimator";
+  int count = 1;                                  ///< 1 … 1e6
   std::optional<std::vector<double>> position_m;  ///< 2 coordinates
   std::optional<CircleSpec> circle;               ///< instead of position_m
   std::optional<MotionSpec> motion;               ///< none: it stands still
@@ -122,6 +133,8 @@ struct AgentSpec {
   EstimatorSpec estimator;
   TrackerSpec tracker;
   LocalizerSpec localizer;
+  GridSpec grid;
+  std::optional<ExplorationSpec> exploration;  ///< none: it goes as its motion says
   TalkSpec talk;
   std::optional<TrafficSpec> traffic;        ///< of a source; none: it listens
   std::map<std::string, double> parameters;  ///< free, for agents of a user's program
@@ -138,10 +151,12 @@ struct RecordSpec {
   std::vector<std::string> series;  ///< names of metrics kept over time; empty: none
   double series_period_s = 1.0;     ///< > 0; samples at 0, period, 2·period, … and at the end
   TrackScoreSpec tracks;
+  AlarmSpec alarms;
   std::optional<AgreementSpec> agreement;  ///< none: agree_again_s is not recorded
   std::string messages = "counts";         ///< "all" | "counts"
   std::string links = "on";                ///< "on" | "off"
   std::string ledger = "on";               ///< "on" | "off"
+  std::string grids = "off";               ///< "on": all cells of all grids at the end
 };
 
 struct Scenario {

@@ -22,6 +22,7 @@ const char* type_of(const AgentRef&) { return "agent"; }
 const char* type_of(const std::vector<AgentRef>&) { return "array of agents"; }
 const char* type_of(const std::string&) { return "string"; }
 const char* type_of(const std::vector<double>&) { return "2 coordinates"; }
+const char* type_of(const NumberList&) { return "array of numbers"; }
 const char* type_of(const std::vector<std::string>&) { return "array of strings"; }
 const char* type_of(const std::vector<std::array<int, 2>>&) { return "array of pairs"; }
 const char* type_of(const std::vector<std::array<double, 2>>&) { return "array of points"; }

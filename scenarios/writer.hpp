@@ -10,6 +10,7 @@
 
 #include "scenarios/channel_spec.hpp"
 #include "scenarios/document.hpp"
+#include "scenarios/explorer_spec.hpp"
 
 namespace hearsay {
 
@@ -35,6 +36,7 @@ std::string toml_text(const std::vector<T>& values) {
   }
   return "[" + text + "]";
 }
+inline std::string toml_text(const NumberList& list) { return toml_text(list.values); }
 inline std::string toml_text(const std::map<std::string, double>& values) {
   std::string text;
   for (const auto& [key, value] : values) {

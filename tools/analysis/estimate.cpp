@@ -48,7 +48,7 @@ bool compares_ratio(const ClaimRules& rules) {
 
 bool agrees_relatively(const ClaimRules& rules) {
   if (rules.claim->expect.kind != Kind::agrees_with || rules.log10) return false;
-  return rules.is_rms(rules.metric) || rules.metric.each_subject;
+  return rules.is_rms(rules.metric) || rules.metric.consistency;
 }
 
 /// Relative difference between a and its prediction b, repetition by repetition.

@@ -119,15 +119,17 @@ MetricRule metric_rule(const std::string& name, bool chi2_band) {
   }
   rule.rms = std::find(root_mean_squares.begin(), root_mean_squares.end(), name) !=
              root_mean_squares.end();
-  rule.median = name == "agree_again_s";
-  rule.each_subject = name.ends_with("nees");
+  rule.median = name == "agree_again_s" || name == "alarms_found_s";
+  rule.consistency = name.ends_with("nees");
+  rule.each_subject = rule.consistency || name.starts_with("alarms_") ||
+                      name.starts_with("alarm_") || name.starts_with("cells_");
   rule.per_dimension = name == "anees" || (chi2_band && (name == "nees" || name == "ledger_nees"));
   return rule;
 }
 
 void add_stored_names(const MetricRule& rule, std::set<std::string>& names) {
   names.insert(rule.stored);
-  if (rule.each_subject) names.insert(dimension_name);
+  if (rule.consistency) names.insert(dimension_name);
 }
 
 std::vector<AgentId> CellRuns::numbered_agents() const {

@@ -20,7 +20,8 @@ struct MetricRule {
   bool per_dimension = false;  ///< divided by the scalar state_dimension
   bool rms = false;            ///< averaged as a root mean square
   bool median = false;         ///< a time that may never come: infinite values count
-  bool each_subject = false;   ///< a measure of consistency: subjects are never averaged
+  bool consistency = false;    ///< a measure of consistency
+  bool each_subject = false;   ///< subjects are never averaged: each counts, or is a threshold
 };
 /// "anees" is nees a dimension; with `chi2_band` so are nees and ledger_nees.
 MetricRule metric_rule(const std::string& name, bool chi2_band = false);

@@ -106,6 +106,10 @@ Json agents(const Catalog& catalog) {
                  {"meaning",
                   "keeps its own pose from odometry, landmarks and companions, and tells "
                   "companions where it saw them"}});
+  out.push_back({{"name", "explorer"},
+                 {"meaning",
+                  "flies over an area with a certainty grid, goes where a look tells most, tells "
+                  "others what it believes and fuses what it hears"}});
   out.push_back({{"name", "source"}, {"meaning", "makes traffic, counts what it hears"}});
   for (const auto& [name, kind] : catalog.agents()) {
     out.push_back({{"name", name}, {"meaning", kind.meaning}});

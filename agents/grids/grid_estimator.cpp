@@ -1,0 +1,141 @@
+#include "agents/grids/grid_estimator.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "sim/kernel/error.hpp"
+
+namespace hearsay {
+
+GridEstimator::GridEstimator(const grid::Area& area, const Options& options)
+    : options_(options), belief_(area, options.belief) {
+  const grid::RuleInfo& rule = grid::info(options_.rule);
+  const std::size_t layers = belief_.shape().layers;
+  require(layers == 1 ? rule.bernoulli : rule.beta,
+          "GridEstimator: the rule is not for grids of this kind");
+  require(grid::blocks_that_fit(options_.form, layers, options_.packet_bytes) > 0 &&
+              grid::blocks_that_fit(grid::Form::whole, layers, options_.packet_bytes) > 0,
+          "GridEstimator: no cell fits into a packet");
+  require(options_.whole_every >= 0, "GridEstimator: whole_every must not be negative");
+  sent_.assign(belief_.evidence().size(), 0.0F);
+}
+
+void GridEstimator::looked(std::span<const grid::CellLook> looks) {
+  belief_.add(looks);
+  counts_.looks += looks.size();
+}
+
+bool GridEstimator::addresses() const {
+  return grid::info(options_.rule).sends == grid::Sends::evidence_less_heard;
+}
+
+GridEstimator::Other& GridEstimator::other(AgentId id) {
+  const auto at = std::lower_bound(others_.begin(), others_.end(), id,
+                                   [](const Other& o, AgentId wanted) { return o.id < wanted; });
+  if (at != others_.end() && at->id == id) return *at;
+  Other fresh;
+  fresh.id = id;
+  return *others_.insert(at, std::move(fresh));
+}
+
+std::span<const float> GridEstimator::evidence_for(AgentId receiver) {
+  if (!addresses()) return belief_.evidence();
+  const Other& to = other(receiver);
+  if (to.common.empty()) return belief_.evidence();
+  less_.resize(belief_.evidence().size());
+  grid::less_heard(belief_.evidence(), to.common, less_);
+  return less_;
+}
+
+bool GridEstimator::tells_nothing(std::span<const float> evidence) const {
+  return std::all_of(evidence.begin(), evidence.end(), [](float e) { return e == 0.0F; });
+}
+
+std::span<const std::vector<std::byte>> GridEstimator::speech(AgentId receiver,
+                                                              std::uint64_t talk) {
+  if (grid::info(options_.rule).sends == grid::Sends::nothing) return {};
+  grid::Encoder::Message message;
+  message.evidence = evidence_for(receiver);
+  message.form = options_.form;
+  if (options_.form == grid::Form::changed) {
+    std::vector<float>* told = &sent_;
+    if (addresses()) told = &other(receiver).sent;
+    if (told->empty()) told->assign(message.evidence.size(), 0.0F);
+    message.sent = *told;
+    const bool whole =
+        options_.whole_every > 0 && talk % static_cast<std::uint64_t>(options_.whole_every) == 0;
+    if (whole) message.form = grid::Form::whole;
+    if (!whole && std::ranges::equal(message.evidence, message.sent)) return {};
+  }
+  if (message.form != grid::Form::changed && tells_nothing(message.evidence)) return {};
+  message.incarnation = incarnation_;
+  message.count = next_count_++;
+  return encoder_.encode(message, belief_.shape(), options_.packet_bytes);
+}
+
+void GridEstimator::sent(AgentId receiver, std::span<const std::byte> packet,
+                         std::span<const AgentId> listeners) {
+  const bool exchanged = grid::info(options_.rule).memory == grid::Memory::last_exchanged;
+  if (options_.form != grid::Form::changed && !exchanged) return;
+  const auto said = grid::Packet::parse(packet, belief_.shape());
+  require(said.has_value(), "GridEstimator: that was no packet of its own");
+  if (options_.form == grid::Form::changed) {
+    said->apply(addresses() ? std::span<float>(other(receiver).sent) : std::span<float>(sent_));
+  }
+  if (!exchanged) return;
+  for (const AgentId listener : listeners) {
+    std::vector<float>& common = other(listener).common;
+    if (common.empty()) common.assign(belief_.evidence().size(), 0.0F);
+    said->apply(common);
+  }
+}
+
+bool GridEstimator::is_news(Other& from, const grid::PacketHead& head) {
+  const auto order = std::pair(head.incarnation, head.count);
+  const auto known = std::pair(from.incarnation, from.count);
+  if (from.heard && order < known) return false;
+  if (!from.heard || order > known || from.parts.size() != head.parts) {
+    from.heard = true;
+    from.incarnation = head.incarnation;
+    from.count = head.count;
+    from.parts.assign(head.parts, 0);
+  }
+  if (from.parts[head.part] != 0) return false;
+  from.parts[head.part] = 1;
+  return true;
+}
+
+void GridEstimator::heard(AgentId from, std::span<const std::byte> bytes) {
+  const grid::Shape shape = belief_.shape();
+  const auto packet = grid::Packet::parse(bytes, shape);
+  if (!packet || options_.rule == grid::Rule::none) {
+    ++counts_.refused;
+    return;
+  }
+  Other& sender = other(from);
+  if (!is_news(sender, packet->head())) {
+    ++counts_.refused;
+    return;
+  }
+  const bool remembers = grid::info(options_.rule).memory != grid::Memory::nothing;
+  if (remembers && sender.common.empty()) sender.common.assign(belief_.evidence().size(), 0.0F);
+  packet->for_each_range([&](int first, std::span<const float> values) {
+    const auto begin = static_cast<std::size_t>(first) * shape.layers;
+    std::span<float> common;
+    if (remembers) common = std::span(sender.common).subspan(begin, values.size());
+    belief_.fuse(options_.rule, {.first_cell = first, .received = values, .common = common},
+                 options_.omega);
+    if (remembers) std::copy(values.begin(), values.end(), common.begin());
+  });
+  ++counts_.fusions;
+}
+
+void GridEstimator::forget() {
+  belief_.clear();
+  others_.clear();
+  std::fill(sent_.begin(), sent_.end(), 0.0F);
+  ++incarnation_;
+  next_count_ = 1;
+}
+
+}  // namespace hearsay

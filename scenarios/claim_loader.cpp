@@ -50,6 +50,10 @@ class ExpectationReader {
     if (const TomlNode* node = table_.find("agents")) {
       e_.agents = read_agents(*node, path_["agents"], {"each", "mean", "central", "max"});
     }
+    if (const TomlNode* node = table_.find("subjects")) {
+      read(*node, path_["subjects"], anything(), e_.subjects);
+      if (e_.subjects.empty()) reject(*node, path_["subjects"], "must have at least one name");
+    }
     if (const TomlNode* node = table_.find("at")) e_.at = read_at(*node);
     if (const TomlNode* node = table_.find("over")) e_.over = read_metric(*node, path_["over"]);
     read_choice("statistic", {"auto", "mean", "rms", "median", "max", "min", "any"}, e_.statistic);
@@ -60,8 +64,8 @@ class ExpectationReader {
 
  private:
   void check_keys() const {
-    std::vector<std::string> known = {"metric", "where",     "agents", "at",
-                                      "over",   "statistic", "scale"};
+    std::vector<std::string> known = {"metric", "where",     "agents", "subjects",
+                                      "at",     "over",      "statistic", "scale"};
     for (const auto& [name, kind] : kinds) known.emplace_back(name);
     expect_table(table_, path_);
     expect_known_keys(table_, path_, known);

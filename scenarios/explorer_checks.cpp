@@ -139,6 +139,11 @@ void ExplorerChecker::check_other(const AgentSpec& agent, const KeyPath& path) c
   if (is_for_grids(agent.sensor)) {
     fail(sensor["kind"], "\"" + agent.sensor.kind + "\" looks at the cells of grids: " + only);
   }
+  const bool anywhere = std::any_of(s_.world.targets.begin(), s_.world.targets.end(),
+                                    [](const TargetSpec& t) { return !t.position_m; });
+  if (explorers_ && anywhere && agent.sensor.kind != "none") {
+    fail(sensor["kind"], "\"" + agent.sensor.kind + "\" needs targets with position_m");
+  }
   const bool believes =
       agent.kind == "estimator" || agent.kind == "tracker" || agent.kind == "localizer";
   if (explorers_ && believes) {

@@ -72,6 +72,7 @@ std::vector<Sensor> sensors_of(const AgentSpec& spec, const WorldSpec& world,
                                const std::optional<std::array<double, 2>>& place) {
   const std::string& kind = spec.sensor.kind;
   std::vector<Sensor> sensors;
+  if (kind != "position" && kind != "camera" && kind != "range-bearing") return sensors;
   for (const TargetSpec& target : world.targets) {
     const Site site = site_of(spec, target, place);
     if (kind == "position") sensors.emplace_back(position_sensor(spec.sensor, target, site));

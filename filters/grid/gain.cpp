@@ -4,16 +4,28 @@
 #include <cstddef>
 
 #include "sim/kernel/error.hpp"
+#include "sim/math/functions.hpp"
 
 namespace hearsay::grid {
 
+namespace {
+
+/// Of a choice of two, nats; their probabilities add up to 1.
+double entropy_of(double p, double q) { return -p * math::log(p) - q * math::log(q); }
+
+}  // namespace
+
+// The fall of the cell's entropy by the answer is the fall of the answer's entropy by the cell (both
+// are their mutual information): fewer logarithms, and none of them of odds.
 double expected_gain(double log_odds, const Detector& detector) {
-  const double p = probability_of(log_odds), q = probability_of(-log_odds);
+  const double small = math::exp(-std::fabs(log_odds));
+  const double likely = 1.0 / (1.0 + small), unlikely = small / (1.0 + small);
+  const double p = log_odds < 0.0 ? unlikely : likely, q = log_odds < 0.0 ? likely : unlikely;
   const double detect = detector.p_detect * p + detector.p_false * q;
-  const double after_detection = bernoulli_entropy(log_odds + log_likelihood_ratio(detector, 1.0));
-  const double after_none = bernoulli_entropy(log_odds + log_likelihood_ratio(detector, 0.0));
-  const double gain = bernoulli_entropy(log_odds) - detect * after_detection -
-                      ((1.0 - detector.p_detect) * p + (1.0 - detector.p_false) * q) * after_none;
+  const double none = (1.0 - detector.p_detect) * p + (1.0 - detector.p_false) * q;
+  const double gain = entropy_of(detect, none) -
+                      p * entropy_of(detector.p_detect, 1.0 - detector.p_detect) -
+                      q * entropy_of(detector.p_false, 1.0 - detector.p_false);
   return gain > 0.0 ? gain : 0.0;
 }
 

@@ -9,13 +9,14 @@
 //
 // Who and when. Every agent ("each"), their mean or their largest in a run, one of them, or the
 // central filter; at the last instant, at all, or at one. Several subjects are averaged in a run,
-// except for measures of consistency (…nees), where each is a comparison of its own. Under at =
-// "all" the instants before a comparison's first value do not count.
+// except for measures of consistency (…nees) and of alarms (alarm…, cells_…: a threshold each), where
+// each is a comparison of its own, and for those that `subjects` names. Under at = "all" the instants before a comparison's first value do not count.
 //
 // Over repetitions, `statistic`:
 //   auto      root mean square for errors (rms_error_m, velocity_error_m_per_s, x_error_m,
 //             y_error_m) and standard deviations (claimed_sigma_m, true_sigma_m,
-//             final_claimed_sigma_m, claimed_velocity_sigma_m_per_s); median for agree_again_s;
+//             final_claimed_sigma_m, claimed_velocity_sigma_m_per_s); median for agree_again_s
+//             and alarms_found_s;
 //             else the mean
 //   mean, rms
 //   median    with an interval between order statistics
@@ -23,7 +24,7 @@
 //   any       the share of repetitions with a value above zero, with Wilson's interval
 // Infinite values (a time that never came, a gap to an empty central filter) count under median,
 // max, min and any, where of two infinite ones neither is the greater; mean and rms leave them out
-// as missing, and are therefore refused for agree_again_s.
+// as missing, and are therefore refused for those two.
 // anees is the mean of nees, divided by the state's dimension; bytes_per_m_saved is bytes_sent over
 // distance_saved_m, quotients of means, and has no value where the latter is not positive. `over`
 // divides the aggregate by that of another metric (with max, min, any or a scale of log10: each

@@ -154,11 +154,28 @@ class Builder {
 
   std::vector<int> subjects(const CellRuns& cell) {
     if (column() == nullptr || !column()->is_series()) return {all_subjects};
+    if (!expect_.subjects.empty()) return named_subjects(column()->subjects(cell.runs.begin()->second));
     if (!rules_.metric.each_subject) {
       subjects_averaged_ = subjects_averaged_ || values_.subjects().size() > 1;
       return {all_subjects};
     }
     return column()->subjects(cell.runs.begin()->second);
+  }
+
+  std::vector<int> named_subjects(const std::vector<int>& present) const {
+    std::vector<int> chosen;
+    std::vector<std::string> names;
+    for (const int subject : present) {
+      names.push_back(values_.subjects()[static_cast<std::size_t>(subject)]);
+    }
+    for (const std::string& name : expect_.subjects) {
+      const auto at = std::find(names.begin(), names.end(), name);
+      if (at == names.end()) {
+        refuse(fmt::format("no subject '{}'{}", name, allowed_names(name, names)));
+      }
+      chosen.push_back(present[static_cast<std::size_t>(at - names.begin())]);
+    }
+    return chosen;
   }
 
   std::vector<int> instants(const CellRuns& cell) const {

@@ -5,10 +5,11 @@
 // anything: that they part is up to what they tell each other about the map.
 //
 // Moves of equal worth, to within 1e-12 of the largest amounts compared, are decided by a draw,
-// each as likely; there is no draw where one move is best. So where all is known alike, say all 0,
+// each as likely; there is no draw where one move is best. So where no look tells anything,
 //   – and beta = 0: every move is as good, and a vehicle walks at random (staying is a move, too);
 //   – and beta > 0: a holonomic vehicle stays, the others go straight on as long as they can.
 // Neither finds an unknown patch beyond its view but by chance: that is what the horizon is for.
+// (Detectors that err leave a little to be gained everywhere, and it goes where that is most.)
 #pragma once
 
 #include <concepts>
@@ -34,7 +35,7 @@ class Exploration {
     /// turn is one of `headings`, of those that lead to a place in the area. If none does, it turns
     /// towards the centre of the area, as far as it may. So one that began in the area is never
     /// farther from it than the diameter of the circle of its sharpest turns,
-    /// cell_m/sin(turn_max_rad/2).
+    /// cell_m/sin(turn_max_rad/2). (For which the area should have room.)
     constant_speed,
   };
 

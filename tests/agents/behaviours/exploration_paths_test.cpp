@@ -66,6 +66,19 @@ TEST(ExplorationPaths, AtConstantSpeedItComesBackFromTheBorder) {
   EXPECT_GT(farthest, 0.5);  // the bound is not idle
 }
 
+TEST(ExplorationPaths, OutsideItTurnsToTheCentreByTheShorterWay) {
+  const Area area = cells(16, 12, 2.0, {-16.0, -12.0});
+  const Exploration exploration({.vehicle = Vehicle::constant_speed, .turn_max_rad = 0.5}, area);
+  const auto zero = [](const State&) { return 0.0; };
+  Stream draws = stream(13);
+  for (int i = 0; i < 200; ++i) {
+    const double bearing = draws.uniform(-pi, pi), off = draws.uniform(-pi, pi);
+    const State here{{-40 * std::cos(bearing), -40 * std::sin(bearing)}, wrapped(bearing + off)};
+    const double turn = wrapped(exploration.next(here, zero, draws).heading_rad - here.heading_rad);
+    EXPECT_NEAR(turn, std::abs(off) < 0.5 ? -off : std::copysign(0.5, -off), 1e-12);
+  }
+}
+
 TEST(ExplorationPaths, AnExcursionEndsAfterOneTurnAndTheWayBack) {
   // Where the area has room for the circle, here of 4 cells, in the middle.
   const Area area = cells(16, 12);

@@ -238,6 +238,22 @@ TEST(Exploration, LooksCountAsFarAsTheAreaGoesAndOnceFromOnePlace) {
   EXPECT_EQ(chosen.count(area.number({1, 5})), 0u);
 }
 
+TEST(Exploration, HolonomicLooksAreFromTheCentresOfCells) {
+  const Area area = cells(40, 40, 0.3, {0.1, -0.7});
+  Stream draws = stream(14);
+  int looks = 0;
+  const auto gain = [&](const State& s) {
+    const grid::Point centre = area.centre(*area.at(s.place_m));
+    EXPECT_EQ(s.place_m.x_m, centre.x_m);
+    EXPECT_EQ(s.place_m.y_m, centre.y_m);
+    ++looks;
+    return 0.0;
+  };
+  const Exploration exploration({.horizon = 15}, area);
+  exploration.next(in_cell(area, 20, 19), gain, draws);
+  EXPECT_EQ(looks, 8 * 15 + 1);
+}
+
 TEST(Exploration, EqualMovesAreEquallyLikely) {
   const Area area = cells(11, 11, 0.3, {1e6, -1e6});
   Stream draws = stream(6);

@@ -8,7 +8,9 @@
 // each as likely; there is no draw where one move is best. So where no look tells anything,
 //   – and beta = 0: every move is as good, and a vehicle walks at random (staying is a move, too);
 //   – and beta > 0: a holonomic vehicle stays, the others go straight on as long as they can.
-// Neither finds an unknown patch beyond its view but by chance: that is what the horizon is for.
+// The former stays for good, unless it is told something, once nothing in reach is worth its cost,
+// and may leave land unseen: alone, it should have beta = 0.
+// No rule finds an unknown patch beyond its view but by chance: that is what the horizon is for.
 // (Detectors that err leave a little to be gained everywhere, and it goes where that is most.)
 #pragma once
 

@@ -110,7 +110,7 @@ std::span<const grid::CellLook> GridSensor::look(const Point& place_m, double he
 std::span<const grid::CellInView> GridSensor::view(const Point& place_m, double heading_rad) {
   const gaussian::CameraPose from = pose(place_m, heading_rad);
   if (const Imager* const imager = std::get_if<Imager>(&eye_)) {
-    grid::cells_in_view(imager->camera, from, area_, in_view_);
+    grid::cells_in_image(imager->camera, from, area_, in_view_);
   } else {
     grid::cells_in_view(std::get<grid::PresenceSensor>(eye_), from, area_, in_view_);
   }

@@ -200,8 +200,8 @@ Footprint ground_in_image(const GridCamera& camera, const CameraPose& pose, doub
   return ground;
 }
 
-void cells_in_view(const GridCamera& camera, const CameraPose& pose, const Area& area,
-                   std::vector<CellInView>& out) {
+void cells_in_image(const GridCamera& camera, const CameraPose& pose, const Area& area,
+                    std::vector<CellInView>& out) {
   require_camera(camera);
   require(pose.position_m.allFinite() && pose.axes.allFinite(), "GridCamera: a pose is finite");
   out.clear();
@@ -227,7 +227,7 @@ bool CameraLook::look(const CameraPose& pose, const Matrix& covariance) {
           "CameraLook: the covariance of a pose is 6×6");
   in_view_.clear();
   if (!set_samples(pose, covariance)) return false;
-  cells_in_view(camera_, pose, area_, in_view_);
+  cells_in_image(camera_, pose, area_, in_view_);
   return true;
 }
 

@@ -85,8 +85,8 @@ Footprint ground_in_image(const GridCamera& camera, const gaussian::CameraPose& 
 /// The cells with centres in the image and nearer than range_max_m, rising, with P_D and P_F at
 /// their distance: costs as much as there are of these. `out` is overwritten, its storage reused.
 /// @throws BrokenInvariant outside the ranges above, or for a pose that is not finite.
-void cells_in_view(const GridCamera& camera, const gaussian::CameraPose& pose, const Area& area,
-                   std::vector<CellInView>& out);
+void cells_in_image(const GridCamera& camera, const gaussian::CameraPose& pose, const Area& area,
+                    std::vector<CellInView>& out);
 
 /// A look from one place: which cells are in view, and where in the image they are. Reused from
 /// look to look it allocates nothing once warm.
@@ -101,7 +101,7 @@ class CameraLook {
   /// another shape.
   bool look(const gaussian::CameraPose& pose, const gaussian::Matrix& covariance);
 
-  /// As by cells_in_view().
+  /// As by cells_in_image().
   std::span<const CellInView> in_view() const { return in_view_; }
 
   /// Nothing if a sigma point has the cell behind it.

@@ -51,8 +51,10 @@ struct Whole {
   int first, last;
 };
 Whole whole_between(double from, double to, int count) {
-  return {static_cast<int>(std::clamp(std::ceil(from), 0.0, count + 0.0)),
-          static_cast<int>(std::clamp(std::floor(to), -1.0, count - 1.0))};
+  const double low = std::clamp(from, 0.0, count + 0.0);
+  const int below = static_cast<int>(low);
+  const int first = below < low ? below + 1 : below;
+  return {first, to < 0.0 ? -1 : static_cast<int>(std::min(to, count - 1.0))};
 }
 
 /// The weight exp(−d²/2) at a pixel, d² = a·du² + 2b·du·dv + c·dv², and how it goes on: it changes
@@ -61,7 +63,14 @@ Whole whole_between(double from, double to, int count) {
 class Walk {
  public:
   Walk(double a, double b, double c)
-      : a_(a), b_(b), c_(c), by_a_(math::exp(-a)), by_b_(math::exp(-b)), by_c_(math::exp(-c)) {}
+      : a_(a),
+        b_(b),
+        c_(c),
+        by_a_(math::exp(-a)),
+        by_b_(math::exp(-b)),
+        by_c_(math::exp(-c)),
+        back_a_(1.0 / by_a_),
+        back_b_(1.0 / by_b_) {}
 
   /// To column `du` and row `dv`, both relative to the centre.
   void jump(double du, double dv) {
@@ -80,9 +89,9 @@ class Walk {
     down_ *= by_b_;
   }
   void left() {
-    right_ *= 1.0 / by_a_;
+    right_ *= back_a_;
     weight_ /= right_;
-    down_ *= 1.0 / by_b_;
+    down_ *= back_b_;
   }
   /// Weights of `count` pixels from here to the right, and of the marked ones among them.
   void add_row(const unsigned char* pixels, int count, double& all, double& marked) const {
@@ -97,7 +106,7 @@ class Walk {
 
  private:
   double a_, b_, c_;
-  double by_a_, by_b_, by_c_;
+  double by_a_, by_b_, by_c_, back_a_, back_b_;
   double weight_ = 0.0, right_ = 0.0, down_ = 0.0;
 };
 
@@ -151,13 +160,16 @@ std::optional<double> marked_share(const SegmentedImage& image, const PixelEllip
                      box.v_from > rows.last || box.v_to < rows.first;
   if (inside && apart) return 0.0;
   const double a = at.vv / determinant, b = -at.uv / determinant, c = at.uu / determinant;
+  // Of a row: its ellipse's middle, and half its length squared.
+  const double slope = at.uv / at.vv;
+  const double at_middle = gate * determinant / at.vv, by_dv = determinant / (at.vv * at.vv);
   Walk walk(a, b, c);
   double all = 0.0, marked = 0.0;
   int column = -1;  // where the walk stands; nowhere yet
   for (int v = rows.first; v <= rows.last; ++v) {
     const double dv = v - at.v;
-    const double half = std::sqrt(std::fmax(0.0, a * gate - dv * dv / determinant)) / a;
-    const double middle = at.u - b * dv / a;
+    const double half = std::sqrt(std::max(0.0, at_middle - by_dv * dv * dv));
+    const double middle = at.u + slope * dv;
     const Whole range = whole_between(middle - half, middle + half, image.width());
     if (range.first > range.last) {
       column = -1;
@@ -250,17 +262,20 @@ bool CameraLook::set_samples(const CameraPose& pose, const Matrix& covariance) {
 
 std::optional<PixelEllipse> CameraLook::ellipse(int cell) const {
   const Point at = area_.centre(cell);
-  std::array<Pixel, 2 * dimension + 1> pixels;
+  std::array<double, 2 * dimension + 1> us, vs;
   PixelEllipse e{0.0, 0.0, 0.0, 0.0, 0.0};
   for (std::size_t i = 0; i < samples_.size(); ++i) {
-    const auto pixel = pixel_of(samples_[i].homography, at);
-    if (!pixel) return std::nullopt;
-    pixels[i] = *pixel;
-    e.u += samples_[i].weight * pixel->u;
-    e.v += samples_[i].weight * pixel->v;
+    const Matrix3& h = samples_[i].homography;
+    const double ahead = h(2, 0) * at.x_m + h(2, 1) * at.y_m + h(2, 2);
+    if (!(ahead > 0.0)) return std::nullopt;
+    const double scale = 1.0 / ahead;
+    us[i] = (h(0, 0) * at.x_m + h(0, 1) * at.y_m + h(0, 2)) * scale;
+    vs[i] = (h(1, 0) * at.x_m + h(1, 1) * at.y_m + h(1, 2)) * scale;
+    e.u += samples_[i].weight * us[i];
+    e.v += samples_[i].weight * vs[i];
   }
   for (std::size_t i = 0; i < samples_.size(); ++i) {
-    const double du = pixels[i].u - e.u, dv = pixels[i].v - e.v, weight = samples_[i].weight;
+    const double du = us[i] - e.u, dv = vs[i] - e.v, weight = samples_[i].weight;
     e.uu += weight * du * du;
     e.uv += weight * du * dv;
     e.vv += weight * dv * dv;

@@ -77,7 +77,7 @@ TEST(GridSensor, SharesOfMarkedPixelsAreThoseOfTheDetector) {
   GridSensor sensor(with_camera(), plot);
   const auto truth = truth_where(plot, [](double x, double) { return x < 0; });
   Mean there, elsewhere;
-  for (std::uint64_t k = 0; k < 300; ++k) {
+  for (std::uint64_t k = 0; k < 150; ++k) {
     std::array<double, 2> sum{}, cells{};
     for (const CellLook& look : sensor.look({0, 0, 30}, 0, truth, 1, 0, k)) {
       const double x = plot.centre(look.cell).x_m;
@@ -93,7 +93,7 @@ TEST(GridSensor, SharesOfMarkedPixelsAreThoseOfTheDetector) {
   }
   EXPECT_NEAR(there.value(), 0.9, there.bound());
   EXPECT_NEAR(elsewhere.value(), 0.05, elsewhere.bound());
-  EXPECT_LT(there.bound(), 0.002);
+  EXPECT_LT(there.bound(), 0.003);
 }
 
 TEST(GridSensor, LooksSpeakForTheTruthOnAverage) {
@@ -103,7 +103,7 @@ TEST(GridSensor, LooksSpeakForTheTruthOnAverage) {
   GridSensor sensor(options, plot);
   const auto truth = truth_where(plot, [](double x, double y) { return std::hypot(x, y) < 4; });
   Mean inside, outside;
-  for (std::uint64_t k = 0; k < 200; ++k) {
+  for (std::uint64_t k = 0; k < 100; ++k) {
     for (const CellLook& look : sensor.look({-12, 0, 25}, 0, truth, 1, 0, k)) {
       const grid::Point at = plot.centre(look.cell);
       const double from_middle = std::hypot(at.x_m, at.y_m);
@@ -121,18 +121,19 @@ TEST(GridSensor, WhatItBelievesOfItsPoseIsOffByItsNoise) {
   struct Case {
     double sigma_position_m, sigma_attitude_rad, expected_m;
   };
+  const Area coarse({.columns = 20, .rows = 20, .cell_m = 2.0, .x_m = -20.0, .y_m = -20.0});
+  const auto truth = truth_where(coarse, [](double x, double y) { return std::hypot(x, y) < 5; });
   for (const Case& c : {Case{0.8, 0.0, 0.8}, Case{0.0, 0.02, 0.6}, Case{0.3, 0.01, 0.42426}}) {
     GridSensor::Options options = with_camera(c.sigma_position_m, c.sigma_attitude_rad);
     options.detector = {1 - 1e-9, 1e-9};
-    GridSensor sensor(options, plot);
-    const auto truth = truth_where(plot, [](double x, double y) { return std::hypot(x, y) < 3; });
+    GridSensor sensor(options, coarse);
     Mean x, y, xx, yy;
     for (std::uint64_t k = 0; k < 400; ++k) {
       double weight = 0, east = 0, north = 0;
       for (const CellLook& look : sensor.look({0, 0, 30}, 0.5, truth, 1, 0, k)) {
         weight += look.m;
-        east += look.m * plot.centre(look.cell).x_m;
-        north += look.m * plot.centre(look.cell).y_m;
+        east += look.m * coarse.centre(look.cell).x_m;
+        north += look.m * coarse.centre(look.cell).y_m;
       }
       x.add(east / weight);
       y.add(north / weight);
@@ -154,7 +155,7 @@ TEST(GridSensor, SeesTheSameLuckAtTheSameCount) {
     GridSensor one(options, plot), other(options, plot);
     other.look({3, 3, 20}, 1.0, truth, 1, 0, 77);
     int different = 0;
-    for (std::uint64_t k = 0; k < 50; ++k) {
+    for (std::uint64_t k = 0; k < 20; ++k) {
       const auto first = copy_of(one.look({2, 1, 30}, 0.3, truth, 1, 4, k));
       ASSERT_FALSE(first.empty());
       EXPECT_TRUE(same(first, copy_of(other.look({2, 1, 30}, 0.3, truth, 1, 4, k))));
@@ -162,7 +163,7 @@ TEST(GridSensor, SeesTheSameLuckAtTheSameCount) {
       different += same(first, copy_of(one.look({2, 1, 30}, 0.3, truth, 1, 5, k))) ? 0 : 1;
       different += same(first, copy_of(one.look({2, 1, 30}, 0.3, truth, 2, 4, k))) ? 0 : 1;
     }
-    EXPECT_GT(different, 10);
+    EXPECT_GT(different, 5);
   }
 }
 
@@ -246,7 +247,7 @@ TEST(GridSensor, APresenceSensorIsDecidedByTheTrueCellItSeesBest) {
     std::vector<unsigned char> truth;
     double expected;
   };
-  const int looks = 20000;
+  const int looks = 10000;
   for (const Case& c : {Case{{0, 0, 0, 0, 0, 0, 0}, expected(fade(0), 1)},
                         Case{{0, 0, 0, 1, 0, 0, 0}, expected(fade(0), fade(0))},
                         Case{{0, 0, 0, 0, 1, 0, 1}, expected(fade(0), fade(2))},
@@ -261,9 +262,9 @@ TEST(GridSensor, APresenceSensorFiresWithPDForACellStraightBelowAndPFForNone) {
   const Area area({.columns = 9, .rows = 9, .x_m = -4.5, .y_m = -4.5});
   GridSensor sensor(with_presence(1e6), area);
   const auto truth = truth_where(area, [](double x, double y) { return x == 0 && y == 0; });
-  EXPECT_NEAR(share_fired(sensor, {0, 0, 5}, truth, 40000), 0.9, 4 * std::sqrt(0.09 / 40000));
+  EXPECT_NEAR(share_fired(sensor, {0, 0, 5}, truth, 20000), 0.9, 4 * std::sqrt(0.09 / 20000));
   const std::vector<unsigned char> nothing(81, 0);
-  EXPECT_NEAR(share_fired(sensor, {0, 0, 5}, nothing, 40000), 0.05, 4 * std::sqrt(0.0475 / 40000));
+  EXPECT_NEAR(share_fired(sensor, {0, 0, 5}, nothing, 20000), 0.05, 4 * std::sqrt(0.0475 / 20000));
 }
 
 // One cell that is in view, from random places: posteriors by their value, ten bins, against how
@@ -274,7 +275,7 @@ TEST(GridSensor, APresenceSensorsBeliefsAboutOneCellAreCalibrated) {
   Stream random(1, Purpose("worlds"), Entity::agent(0));
   std::array<double, 10> worlds{}, claimed{}, variance{}, were{};
   std::uint64_t count = 0;
-  for (int world = 0; world < 40000; ++world) {
+  for (int world = 0; world < 20000; ++world) {
     grid::BernoulliGrid belief(cell, {.prior = 0.3});
     const std::array<unsigned char, 1> truth{static_cast<unsigned char>(random.bernoulli(0.3))};
     for (int k = 0; k < 4; ++k) {

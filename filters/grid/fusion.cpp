@@ -1,5 +1,6 @@
 #include "filters/grid/fusion.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -38,8 +39,10 @@ void add_less_common(std::span<float> own, const Heard& heard, const Limits& lim
   for (std::size_t i = 0; i < n; ++i) o[i] = limits((o[i] + r[i]) - c[i]);
 }
 
+bool is_larger(float b, float a) { return b > a; }
+
 void larger(std::span<float> own, const Heard& heard, const Limits& limits) {
-  each(own, heard.received, limits, [](float a, float b) { return b > a ? b : a; });
+  each(own, heard.received, limits, [](float a, float b) { return is_larger(b, a) ? b : a; });
 }
 
 /// In double, so that equal numbers stay as they are for any ω.
@@ -50,23 +53,30 @@ void weighted(std::span<float> own, const Heard& heard, const Limits& limits, do
   });
 }
 
-/// The one farther from −`offset`, the larger of two equally far.
+/// Is b farther from −`offset` than a, or the larger of two equally far?
+bool is_farther(float b, float a, double offset) {
+  const double l = std::fabs(static_cast<double>(a) + offset);
+  const double m = std::fabs(static_cast<double>(b) + offset);
+  return m > l || (m == l && b > a);
+}
+
 void farther(std::span<float> own, const Heard& heard, const Limits& limits, double offset) {
-  each(own, heard.received, limits, [offset](float a, float b) {
-    const double l = std::fabs(static_cast<double>(a) + offset);
-    const double m = std::fabs(static_cast<double>(b) + offset);
-    return m > l || (m == l && b > a) ? b : a;
-  });
+  each(own, heard.received, limits,
+       [offset](float a, float b) { return is_farther(b, a, offset) ? b : a; });
+}
+
+/// The evidence of ω·p_own + (1−ω)·p_received.
+double pooled(float a, float b, double prior, double omega) {
+  const double l = prior + static_cast<double>(a), m = prior + static_cast<double>(b);
+  const double p = omega * probability_of(l) + (1.0 - omega) * probability_of(m);
+  const double q = omega * probability_of(-l) + (1.0 - omega) * probability_of(-m);
+  return math::log(p) - math::log(q) - prior;
 }
 
 void pool_linearly(std::span<float> own, const Heard& heard, const Limits& limits, double prior,
                    double omega) {
   each(own, heard.received, limits, [prior, omega](float a, float b) {
-    if (a == b) return a;
-    const double l = prior + static_cast<double>(a), m = prior + static_cast<double>(b);
-    const double p = omega * probability_of(l) + (1.0 - omega) * probability_of(m);
-    const double q = omega * probability_of(-l) + (1.0 - omega) * probability_of(-m);
-    return static_cast<float>(math::log(p) - math::log(q) - prior);
+    return a == b ? a : static_cast<float>(pooled(a, b, prior, omega));
   });
 }
 
@@ -78,27 +88,31 @@ bool more_certain(const Beta& b, const Beta& a) {
   return b.alpha > a.alpha || (b.alpha == a.alpha && b.beta > a.beta);
 }
 
+/// Do the counts b (m, n) dictate to the counts a?
+bool dictates(const float* b, const float* a, const Beta& prior) {
+  if (b[0] == a[0] && b[1] == a[1]) return false;
+  return more_certain(
+      {prior.alpha + static_cast<double>(b[0]), prior.beta + static_cast<double>(b[1])},
+      {prior.alpha + static_cast<double>(a[0]), prior.beta + static_cast<double>(a[1])});
+}
+
 void dictate(std::span<float> own, const Heard& heard, const Limits& limits, const Beta& prior) {
   for (std::size_t i = 0; i + 1 < own.size(); i += BetaGrid::layers) {
-    const float m = limits(heard.received[i]), n = limits(heard.received[i + 1]);
-    if (m == own[i] && n == own[i + 1]) continue;
-    const Beta a{prior.alpha + static_cast<double>(own[i]),
-                 prior.beta + static_cast<double>(own[i + 1])};
-    const Beta b{prior.alpha + static_cast<double>(m), prior.beta + static_cast<double>(n)};
-    if (!more_certain(b, a)) continue;
-    own[i] = m;
-    own[i + 1] = n;
+    const float b[] = {limits(heard.received[i]), limits(heard.received[i + 1])};
+    if (!dictates(b, &own[i], prior)) continue;
+    own[i] = b[0];
+    own[i + 1] = b[1];
   }
 }
 
-/// The range of `own` that was heard.
-template <typename Grid>
-std::span<float> range(Rule rule, Grid& own, const Heard& heard, double omega) {
+/// The range that was heard, of `all` numbers of one's own grid.
+template <typename Number>
+std::span<Number> range(Rule rule, std::span<Number> all, std::size_t layers, const Heard& heard,
+                        double omega) {
   const std::size_t size = heard.received.size();
-  const auto first = Grid::layers * static_cast<std::size_t>(heard.first_cell);
-  const std::span<float> all = own.evidence_mutable();
+  const auto first = layers * static_cast<std::size_t>(heard.first_cell);
   require(heard.first_cell >= 0 && first <= all.size() && size <= all.size() - first &&
-              size % Grid::layers == 0,
+              size % layers == 0,
           "fuse: a range of cells that is not in the grid");
   require(info(rule).memory == Memory::nothing || heard.common.size() == size,
           "fuse: this rule needs what is common, for the cells heard");
@@ -135,11 +149,58 @@ bool fuse_numbers(Rule rule, std::span<float> own, const Heard& heard, const Lim
   return false;
 }
 
+/// out[i] = all of one side's number: received[i] where received_wins(i), else own[i].
+template <typename F>
+void share_by_choice(std::span<Shares> out, F received_wins) {
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i] = received_wins(i) ? Shares{0.0, 1.0, 0.0} : Shares{1.0, 0.0, 0.0};
+  }
+}
+
+/// As fuse_numbers().
+bool share_numbers(Rule rule, std::span<const float> own, const Heard& heard, double omega,
+                   std::span<Shares> out) {
+  switch (rule) {
+    case Rule::none:
+      std::fill(out.begin(), out.end(), Shares{1.0, 0.0, 0.0});
+      return true;
+    case Rule::naive:
+      std::fill(out.begin(), out.end(), Shares{1.0, 1.0, 0.0});
+      return true;
+    case Rule::channel:
+    case Rule::channel_robust:
+      std::fill(out.begin(), out.end(), Shares{1.0, 1.0, 1.0});
+      return true;
+    case Rule::maximum:
+    case Rule::elementwise_maximum:
+      share_by_choice(out, [&](std::size_t i) { return is_larger(heard.received[i], own[i]); });
+      return true;
+    case Rule::geometric_mean:
+    case Rule::averaged_parameters:
+      std::fill(out.begin(), out.end(), Shares{omega, 1.0 - omega, 0.0});
+      return true;
+    case Rule::strongest:
+    case Rule::dictatorship:
+    case Rule::linear_pool:
+      break;
+  }
+  return false;
+}
+
+/// λ = (e − b)/(a − b): the result e of linear-pool lies between a and b, so 0 ≤ λ ≤ 1.
+Shares shares_of_pool(float a, float b, double prior, double omega) {
+  if (a == b) return {omega, 1.0 - omega, 0.0};
+  const double from_b = pooled(a, b, prior, omega) - static_cast<double>(b);
+  const double all = static_cast<double>(a) - static_cast<double>(b);
+  const double lambda = std::clamp(from_b / all, 0.0, 1.0);  // rounding may lead just outside
+  return {lambda, 1.0 - lambda, 0.0};
+}
+
 }  // namespace
 
 void fuse(Rule rule, BernoulliGrid& own, const Heard& heard, double omega) {
   require(info(rule).bernoulli, "fuse: a rule that is not for Bernoulli grids");
-  const std::span<float> cells = range(rule, own, heard, omega);
+  const auto cells = range(rule, own.evidence_mutable(), BernoulliGrid::layers, heard, omega);
   const Limits limits{own.least(), own.greatest()};
   if (fuse_numbers(rule, cells, heard, limits, omega)) return;
   if (rule == Rule::linear_pool) {
@@ -151,9 +212,41 @@ void fuse(Rule rule, BernoulliGrid& own, const Heard& heard, double omega) {
 
 void fuse(Rule rule, BetaGrid& own, const Heard& heard, double omega) {
   require(info(rule).beta, "fuse: a rule that is not for Beta grids");
-  const std::span<float> cells = range(rule, own, heard, omega);
+  const auto cells = range(rule, own.evidence_mutable(), BetaGrid::layers, heard, omega);
   const Limits limits{own.least(), own.greatest()};
   if (!fuse_numbers(rule, cells, heard, limits, omega)) dictate(cells, heard, limits, own.prior());
+}
+
+void shares(Rule rule, const BernoulliGrid& own, const Heard& heard, double omega,
+            std::span<Shares> out) {
+  require(info(rule).bernoulli, "shares: a rule that is not for Bernoulli grids");
+  const auto cells = range(rule, own.evidence(), BernoulliGrid::layers, heard, omega);
+  require(out.size() == cells.size(), "shares: not as many as there are numbers");
+  if (share_numbers(rule, cells, heard, omega, out)) return;
+  const double prior = own.prior_log_odds();
+  if (rule == Rule::linear_pool) {
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      out[i] = shares_of_pool(cells[i], heard.received[i], prior, omega);
+    }
+    return;
+  }
+  const double offset = rule == Rule::dictatorship ? prior : 0.0;
+  share_by_choice(out,
+                  [&](std::size_t i) { return is_farther(heard.received[i], cells[i], offset); });
+}
+
+void shares(Rule rule, const BetaGrid& own, const Heard& heard, double omega,
+            std::span<Shares> out) {
+  require(info(rule).beta, "shares: a rule that is not for Beta grids");
+  const auto cells = range(rule, own.evidence(), BetaGrid::layers, heard, omega);
+  require(out.size() == cells.size(), "shares: not as many as there are numbers");
+  if (share_numbers(rule, cells, heard, omega, out)) return;
+  const Limits limits{own.least(), own.greatest()};
+  for (std::size_t i = 0; i + 1 < out.size(); i += BetaGrid::layers) {
+    const float b[] = {limits(heard.received[i]), limits(heard.received[i + 1])};
+    const bool received_wins = dictates(b, &cells[i], own.prior());
+    share_by_choice(out.subspan(i, BetaGrid::layers), [&](std::size_t) { return received_wins; });
+  }
 }
 
 void less_heard(std::span<const float> own, std::span<const float> heard, std::span<float> out) {

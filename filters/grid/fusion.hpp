@@ -67,6 +67,9 @@ struct RuleInfo {
   std::string_view conservative;  ///< when it is
   std::string_view cost;          ///< of one fusion
   std::string_view source;
+  /// What the rumour ledger (filters/grid/ledger.hpp) knows under it, as long as no evidence stands
+  /// at its limit.
+  std::string_view ledger;
 };
 std::span<const RuleInfo> rules();
 const RuleInfo& info(Rule rule);
@@ -92,6 +95,21 @@ inline constexpr double usual_omega = 0.5;
 /// `common` of another length where the rule needs it, a weight outside [0, 1].
 void fuse(Rule rule, BernoulliGrid& own, const Heard& heard, double omega = usual_omega);
 void fuse(Rule rule, BetaGrid& own, const Heard& heard, double omega = usual_omega);
+
+/// What a number becomes: own·number + heard·received − common·(what is common), before the limit.
+struct Shares {
+  double own = 1.0, heard = 0.0, common = 0.0;
+};
+
+/// With which shares fuse() of the same arguments makes each number of the range: to be asked
+/// before, since the rules that choose look at `own`. linear-pool is not linear in log-odds, but
+/// its result lies between both, e = λ·own + (1−λ)·received: λ is the share (ω where both are
+/// equal). `out` has as many as there are numbers in `heard.received`; nothing is allocated.
+/// @throws BrokenInvariant as fuse(), or for another length.
+void shares(Rule rule, const BernoulliGrid& own, const Heard& heard, double omega,
+            std::span<Shares> out);
+void shares(Rule rule, const BetaGrid& own, const Heard& heard, double omega,
+            std::span<Shares> out);
 
 /// own − heard into `out`, number by number: what channel-robust sends. @throws BrokenInvariant
 /// unless all three are of one length.

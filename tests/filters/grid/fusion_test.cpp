@@ -38,12 +38,28 @@ class EveryGridRule : public testing::TestWithParam<Case> {
   std::vector<float> fused(const std::vector<float>& own, const std::vector<float>& received,
                            double omega = usual_omega) const {
     const std::vector<float> nothing(own.size(), 0.0F);
-    const Heard heard{.received = received, .common = nothing};
+    return fused_with(own, {.received = received, .common = nothing}, omega);
+  }
+  std::vector<float> fused_with(const std::vector<float>& own, const Heard& heard,
+                                double omega) const {
     if (GetParam().beta) return fused_in(BetaGrid(square(10), {{2.0, 3.0}}), own, heard, omega);
     return fused_in(BernoulliGrid(square(10), {.prior = 0.3}), own, heard, omega);
   }
+  std::vector<Shares> shares_of(const std::vector<float>& own, const Heard& heard,
+                                double omega) const {
+    if (GetParam().beta) return shares_in(BetaGrid(square(10), {{2.0, 3.0}}), own, heard, omega);
+    return shares_in(BernoulliGrid(square(10), {.prior = 0.3}), own, heard, omega);
+  }
 
  private:
+  template <typename Grid>
+  std::vector<Shares> shares_in(Grid grid, const std::vector<float>& own, const Heard& heard,
+                                double omega) const {
+    set(grid, own);
+    std::vector<Shares> out(own.size());
+    shares(rule(), grid, heard, omega, out);
+    return out;
+  }
   template <typename Grid>
   std::vector<float> fused_in(Grid grid, const std::vector<float>& own, const Heard& heard,
                               double omega) const {
@@ -126,10 +142,31 @@ TEST_P(EveryGridRule, TouchesOnlyTheCellsThatWereHeard) {
   }
 }
 
+TEST_P(EveryGridRule, SharesMakeWhatFusionMakes) {
+  Stream random = stream("shares");
+  for (int i = 0; i < 20; ++i) {
+    std::vector<float> a = sample(random), b = sample(random), c = sample(random);
+    a[0] = b[0];
+    const std::vector<Shares> made = shares_of(a, {0, b, c}, 0.3);
+    const std::vector<float> result = fused_with(a, {0, b, c}, 0.3);
+    for (std::size_t k = 0; k < a.size(); ++k) {
+      const Shares& s = made[k];
+      const double sum = s.own * static_cast<double>(a[k]) + s.heard * static_cast<double>(b[k]) -
+                         s.common * static_cast<double>(c[k]);
+      EXPECT_NEAR(static_cast<double>(result[k]), sum, 1e-5) << k;
+      if (row().idempotent) {
+        EXPECT_NEAR(s.own + s.heard, 1.0, 1e-12);
+        EXPECT_GE(s.own, 0.0);
+        EXPECT_LE(s.own, 1.0);
+      }
+    }
+  }
+}
+
 TEST_P(EveryGridRule, HasAWholeRow) {
   EXPECT_EQ(rule_by_name(row().name), rule());
   for (const std::string_view text :
-       {row().assumes, row().conservative, row().cost, row().source}) {
+       {row().assumes, row().conservative, row().cost, row().source, row().ledger}) {
     EXPECT_FALSE(text.empty());
   }
 }
@@ -265,6 +302,11 @@ TEST(GridFusion, RefusesWhatDoesNotFit) {
   EXPECT_THROW(fuse(Rule::maximum, beta, {0, eight}), BrokenInvariant);
   EXPECT_THROW(fuse(Rule::averaged_parameters, grid, {0, four}), BrokenInvariant);
   EXPECT_FALSE(rule_by_name("no such rule"));
+  std::vector<Shares> out(4);
+  EXPECT_THROW(shares(Rule::naive, grid, {0, three}, 0.5, out), BrokenInvariant);
+  EXPECT_THROW(shares(Rule::naive, grid, {1, four}, 0.5, out), BrokenInvariant);
+  EXPECT_THROW(shares(Rule::channel, grid, {0, four}, 0.5, out), BrokenInvariant);
+  EXPECT_THROW(shares(Rule::maximum, beta, {0, four}, 0.5, out), BrokenInvariant);
 }
 
 }  // namespace

@@ -17,6 +17,7 @@
 #include "filters/grid/codec.hpp"
 #include "filters/grid/fusion.hpp"
 #include "filters/grid/gain.hpp"
+#include "filters/grid/ledger.hpp"
 #include "filters/grid/regions.hpp"
 #include "filters/ledger/ledger.hpp"
 #include "tests/filters/gaussian/samples.hpp"
@@ -216,9 +217,12 @@ TEST(Allocation, DoesNotHappenInAWarmLedger) {
 template <typename Grid>
 void expect_no_allocation_in_fusion(Grid& own, bool grid::RuleInfo::*is_for) {
   const std::vector<float> received(own.evidence().size(), 1.5F);
+  std::vector<grid::Shares> out(received.size());
   for (const grid::RuleInfo& row : grid::rules()) {
     if (!(row.*is_for)) continue;
     const grid::Heard heard{.received = received, .common = received};
+    EXPECT_EQ(allocations_of([&] { grid::shares(row.rule, own, heard, 0.5, out); }), 0u)
+        << row.name;
     EXPECT_EQ(allocations_of([&] { grid::fuse(row.rule, own, heard); }), 0u) << row.name;
   }
 }
@@ -250,6 +254,38 @@ TEST(Allocation, DoesNotHappenInFusionAndMessagesOfGrids) {
               0u);
     EXPECT_GT(packets, 1u);
   }
+}
+
+TEST(Allocation, DoesNotHappenInLedgersOfGridsButForRowsThatAreSharedOrGrow) {
+  const grid::Shape shape{400, 1};
+  grid::LookLedger own(shape), heard(shape), sent(shape), last(shape);
+  for (int cell = 0; cell < 400; ++cell) {
+    own.looked(cell, 3);
+    heard.looked(cell, 2);
+    if (cell % 2 == 0) last.looked(cell, 1);
+  }
+  grid::LookLedger copy = own;
+  const std::vector<grid::Shares> all(400, {1.0, 1.0, 1.0}), half(400, {0.5, 0.5, 0.0});
+  const auto work = [&] {
+    own.looked(7, 3);
+    own.combine(0, all, heard, &last);
+    own.combine(0, half, heard);
+    sent.difference(own, last);
+  };
+  EXPECT_GT(allocations_of(work), 0u);  // of rows shared with the copy
+  EXPECT_EQ(allocations_of([&] { copy = own; }), 0u);
+  copy.clear();
+  sent.clear();
+  for (int cell = 0; cell < 400; ++cell) sent.looked(cell, 3);
+  EXPECT_EQ(allocations_of([&] {
+              own.looked(7, 3);
+              own.combine(0, all, heard, &last);
+              own.combine(0, half, heard);
+              last.copy_range(0, 400, heard);
+              sent.difference(own, last);
+              copy = own;
+            }),
+            0u);
 }
 
 TEST(Allocation, DoesNotHappenInWarmLooksAtGrids) {

@@ -14,7 +14,7 @@
 #include "filters/gaussian/trajectory_codec.hpp"
 #include "filters/gaussian/transition.hpp"
 #include "filters/ledger/ledger.hpp"
-#include "net/packet.hpp"
+#include "net/rider_pool.hpp"
 #include "sim/kernel/time.hpp"
 
 namespace hearsay {
@@ -36,30 +36,16 @@ struct TrackedBelief {
 
 /// The ledgers of the beliefs in one message, by position, and of their fresh parts where the rule
 /// fuses those apart; rides beside the packet.
-class LedgerRider final : public Rider {
+class LedgerRider final : public PooledRider<LedgerRider> {
  public:
   std::vector<Ledger> ledgers;
   std::vector<Ledger> fresh;
 
  private:
-  friend class LedgerPool;
-  explicit LedgerRider(std::vector<LedgerRider*>& home) : home_(home) {}
-  void recycle() override { home_.push_back(this); }
-  std::vector<LedgerRider*>& home_;
+  friend class RiderPool<LedgerRider>;
+  using PooledRider::PooledRider;
 };
-
-/// Riders of one run, reused. Must outlive every packet that carries one.
-class LedgerPool {
- public:
-  LedgerPool() = default;
-  LedgerPool(const LedgerPool&) = delete;
-  LedgerPool& operator=(const LedgerPool&) = delete;
-  RiderPtr make(LedgerRider*& rider);
-
- private:
-  std::vector<std::unique_ptr<LedgerRider>> riders_;
-  std::vector<LedgerRider*> free_;
-};
+using LedgerPool = RiderPool<LedgerRider>;
 
 /// What estimators need only while they speak or hear. One for all agents of a run, so that a
 /// message to the next agent finds it in the cache.

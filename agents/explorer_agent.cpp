@@ -17,7 +17,7 @@ ExplorerAgent::ExplorerAgent(Context& context, GridWitness& witness, const Optio
     : Agent(context),
       witness_(witness),
       options_(options),
-      estimator_(options.area, options.estimator),
+      estimator_(options.area, options.estimator, witness.riders()),
       message_kind_(context.simulation().record().name("grid")) {
   if (options_.sensor) sensor_.emplace(*options_.sensor, options_.area);
   if (options_.exploration) {
@@ -50,8 +50,7 @@ Process ExplorerAgent::look() {
     if (context().up()) {
       const auto looks = sensor_->look(place, heading_rad_, witness_.truth(),
                                        context().simulation().seed(), context().id(), count);
-      estimator_.looked(looks);
-      witness_.looked(context().id(), looks);
+      estimator_.looked(looks, witness_.looked(context().id(), looks));
     }
     next = next + options_.sensor_period;
   }
@@ -106,6 +105,7 @@ void ExplorerAgent::say(AgentId receiver, std::uint64_t talk) {
     packet.kind = message_kind_;
     packet.bytes = packets[part];
     packet.receiver = receiver;
+    packet.rider = estimator_.rider();
     packet.tick = talk * parts_a_tick + part;
     // News of the same part of the area takes the place of what still waits.
     packet.subject =
@@ -116,7 +116,9 @@ void ExplorerAgent::say(AgentId receiver, std::uint64_t talk) {
 }
 
 void ExplorerAgent::on_packet(const Packet& packet) {
-  if (packet.kind == message_kind_) estimator_.heard(packet.sender, packet.bytes);
+  if (packet.kind == message_kind_) {
+    estimator_.heard(packet.sender, packet.bytes, packet.rider);
+  }
 }
 
 void ExplorerAgent::on_up(bool forgets) {

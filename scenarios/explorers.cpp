@@ -105,6 +105,7 @@ std::unique_ptr<GridWitness> make_grid_witness(const Scenario& scenario, Simulat
                            .period = Duration::seconds(record.series_period_s),
                            .series = record.series,
                            .grids = record.grids == "on",
+                           .ledger = record.ledger == "on",
                            .place_of = std::move(place_of)});
 }
 

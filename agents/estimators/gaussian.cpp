@@ -14,18 +14,6 @@ using gaussian::Sends;
 
 }  // namespace
 
-RiderPtr LedgerPool::make(LedgerRider*& rider) {
-  if (free_.empty()) {
-    riders_.push_back(std::unique_ptr<LedgerRider>(new LedgerRider(free_)));
-    free_.reserve(riders_.size());
-    rider = riders_.back().get();
-  } else {
-    rider = free_.back();
-    free_.pop_back();
-  }
-  return RiderPtr(rider);
-}
-
 GaussianEstimator::GaussianEstimator(const Options& options, std::span<const AgentId> neighbours)
     : options_(options),
       rule_(gaussian::info(options.rule)),

@@ -46,6 +46,11 @@ void GridBelief::fuse(grid::Rule rule, const grid::Heard& heard, double omega) {
   std::visit([&](auto& g) { grid::fuse(rule, g, heard, omega); }, grid_);
 }
 
+void GridBelief::shares(grid::Rule rule, const grid::Heard& heard, double omega,
+                        std::span<grid::Shares> out) const {
+  std::visit([&](const auto& g) { grid::shares(rule, g, heard, omega, out); }, grid_);
+}
+
 void GridBelief::clear() {
   std::visit([](auto& g) { g.clear(); }, grid_);
 }

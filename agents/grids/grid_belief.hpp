@@ -28,6 +28,9 @@ class GridBelief {
 
   void add(std::span<const grid::CellLook> looks);
   void fuse(grid::Rule rule, const grid::Heard& heard, double omega);
+  /// The shares with which fuse() of the same arguments makes each number; see filters/grid.
+  void shares(grid::Rule rule, const grid::Heard& heard, double omega,
+              std::span<grid::Shares> out) const;
   void clear();
 
   /// What a look at these cells is expected to tell, nats.

@@ -7,8 +7,9 @@
 
 namespace hearsay {
 
-GridEstimator::GridEstimator(const grid::Area& area, const Options& options)
-    : options_(options), belief_(area, options.belief) {
+GridEstimator::GridEstimator(const grid::Area& area, const Options& options,
+                             RiderPool<GridRider>* riders)
+    : options_(options), belief_(area, options.belief), riders_(riders), ledger_(belief_.shape()) {
   const grid::RuleInfo& rule = grid::info(options_.rule);
   const std::size_t layers = belief_.shape().layers;
   require(layers == 1 ? rule.bernoulli : rule.beta,
@@ -20,8 +21,13 @@ GridEstimator::GridEstimator(const grid::Area& area, const Options& options)
   sent_.assign(belief_.evidence().size(), 0.0F);
 }
 
-void GridEstimator::looked(std::span<const grid::CellLook> looks) {
+void GridEstimator::looked(std::span<const grid::CellLook> looks,
+                           std::span<const std::uint32_t> indices) {
   belief_.add(looks);
+  if (riders_) {
+    require(indices.size() == looks.size(), "GridEstimator: a look has no index");
+    for (std::size_t i = 0; i < looks.size(); ++i) ledger_.looked(looks[i].cell, indices[i]);
+  }
   counts_.looks += looks.size();
 }
 
@@ -35,6 +41,7 @@ GridEstimator::Other& GridEstimator::other(AgentId id) {
   if (at != others_.end() && at->id == id) return *at;
   Other fresh;
   fresh.id = id;
+  fresh.common_ledger = grid::LookLedger(belief_.shape());
   return *others_.insert(at, std::move(fresh));
 }
 
@@ -68,9 +75,22 @@ std::span<const std::vector<std::byte>> GridEstimator::speech(AgentId receiver,
     if (!whole && std::ranges::equal(message.evidence, message.sent)) return {};
   }
   if (message.form != grid::Form::changed && tells_nothing(message.evidence)) return {};
+  make_rider(receiver);
   message.incarnation = incarnation_;
   message.count = next_count_++;
   return encoder_.encode(message, belief_.shape(), options_.packet_bytes);
+}
+
+void GridEstimator::make_rider(AgentId receiver) {
+  if (!riders_) return;
+  GridRider* rider = nullptr;
+  rider_ = riders_->make(rider);
+  if (addresses()) {
+    if (rider->ledger.shape().cells == 0) rider->ledger = grid::LookLedger(belief_.shape());
+    rider->ledger.difference(ledger_, other(receiver).common_ledger);
+  } else {
+    rider->ledger = ledger_;
+  }
 }
 
 void GridEstimator::sent(AgentId receiver, std::span<const std::byte> packet,
@@ -87,6 +107,12 @@ void GridEstimator::sent(AgentId receiver, std::span<const std::byte> packet,
     std::vector<float>& common = other(listener).common;
     if (common.empty()) common.assign(belief_.evidence().size(), 0.0F);
     said->apply(common);
+    if (!riders_) continue;
+    const auto layers = belief_.shape().layers;
+    said->for_each_range([&](int first, std::span<const float> values) {
+      other(listener).common_ledger.copy_range(first, static_cast<int>(values.size() / layers),
+                                               ledger_);
+    });
   }
 }
 
@@ -105,9 +131,8 @@ bool GridEstimator::is_news(Other& from, const grid::PacketHead& head) {
   return true;
 }
 
-void GridEstimator::heard(AgentId from, std::span<const std::byte> bytes) {
-  const grid::Shape shape = belief_.shape();
-  const auto packet = grid::Packet::parse(bytes, shape);
+void GridEstimator::heard(AgentId from, std::span<const std::byte> bytes, const Rider* rider) {
+  const auto packet = grid::Packet::parse(bytes, belief_.shape());
   if (!packet || options_.rule == grid::Rule::none) {
     ++counts_.refused;
     return;
@@ -117,21 +142,40 @@ void GridEstimator::heard(AgentId from, std::span<const std::byte> bytes) {
     ++counts_.refused;
     return;
   }
-  const bool remembers = grid::info(options_.rule).memory != grid::Memory::nothing;
-  if (remembers && sender.common.empty()) sender.common.assign(belief_.evidence().size(), 0.0F);
-  packet->for_each_range([&](int first, std::span<const float> values) {
-    const auto begin = static_cast<std::size_t>(first) * shape.layers;
-    std::span<float> common;
-    if (remembers) common = std::span(sender.common).subspan(begin, values.size());
-    belief_.fuse(options_.rule, {.first_cell = first, .received = values, .common = common},
-                 options_.omega);
-    if (remembers) std::copy(values.begin(), values.end(), common.begin());
-  });
+  const auto* const of_grid = dynamic_cast<const GridRider*>(rider);
+  const grid::LookLedger* const ledger = riders_ && of_grid ? &of_grid->ledger : nullptr;
+  packet->for_each_range(
+      [&](int first, std::span<const float> values) { fuse(sender, first, values, ledger); });
   ++counts_.fusions;
+}
+
+void GridEstimator::fuse(Other& from, int first_cell, std::span<const float> values,
+                         const grid::LookLedger* ledger) {
+  const std::size_t layers = belief_.shape().layers;
+  const bool remembers = grid::info(options_.rule).memory != grid::Memory::nothing;
+  if (remembers && from.common.empty()) from.common.assign(belief_.evidence().size(), 0.0F);
+  std::span<float> common;
+  if (remembers) {
+    const auto begin = static_cast<std::size_t>(first_cell) * layers;
+    common = std::span(from.common).subspan(begin, values.size());
+  }
+  const grid::Heard heard{.first_cell = first_cell, .received = values, .common = common};
+  if (ledger) {
+    shares_.resize(values.size());
+    belief_.shares(options_.rule, heard, options_.omega, shares_);
+    ledger_.combine(first_cell, shares_, *ledger, remembers ? &from.common_ledger : nullptr);
+  }
+  belief_.fuse(options_.rule, heard, options_.omega);
+  if (!remembers) return;
+  std::copy(values.begin(), values.end(), common.begin());
+  if (ledger) {
+    from.common_ledger.copy_range(first_cell, static_cast<int>(values.size() / layers), *ledger);
+  }
 }
 
 void GridEstimator::forget() {
   belief_.clear();
+  ledger_.clear();
   others_.clear();
   std::fill(sent_.begin(), sent_.end(), 0.0F);
   ++incarnation_;

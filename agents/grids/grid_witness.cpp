@@ -35,6 +35,7 @@ GridWitness::GridWitness(Simulation& simulation, Options options)
     : simulation_(simulation),
       options_(std::move(options)),
       truth_(truth_of(options_.area, options_.targets)),
+      book_(GridBelief(options_.area, options_.belief).shape()),
       central_(options_.area, options_.belief) {
   require(!options_.thresholds.empty(), "GridWitness: there is no threshold");
   const auto wants = [&](const char* name) {
@@ -44,6 +45,9 @@ GridWitness::GridWitness(Simulation& simulation, Options options)
              .entropy = wants("entropy_nats"),
              .disagreement = wants("disagreement_probability"),
              .place = wants("place_x_m") || wants("place_y_m"),
+             .multiplicity_mean = options_.ledger && wants("multiplicity_mean"),
+             .multiplicity_max = options_.ledger && wants("multiplicity_max"),
+             .multiplicity_share = options_.ledger && wants("multiplicity_share"),
              .detected = wants("alarms_detected_share"),
              .false_alarms = wants("alarms_false"),
              .position_error = wants("alarm_error_m"),
@@ -55,13 +59,19 @@ GridWitness::GridWitness(Simulation& simulation, Options options)
   }
 }
 
-void GridWitness::looked(AgentId agent, std::span<const grid::CellLook> looks) {
+std::span<const std::uint32_t> GridWitness::looked(AgentId agent,
+                                                   std::span<const grid::CellLook> looks) {
   central_.add(looks);
   looks_ += looks.size();
+  indices_.clear();
+  if (options_.ledger) {
+    for (const grid::CellLook& look : looks) indices_.push_back(book_.add(look));
+  }
   const auto at = std::lower_bound(watched_.begin(), watched_.end(), agent,
                                    [](const Watched& w, AgentId id) { return w.agent < id; });
-  if (at == watched_.end() || at->agent != agent) return;
+  require(at != watched_.end() && at->agent == agent, "GridWitness: nobody watches who looked");
   for (const grid::CellLook& look : looks) at->seen[static_cast<std::size_t>(look.cell)] = 1;
+  return indices_;
 }
 
 void GridWitness::watch(AgentId agent, const GridEstimator& estimator) {
@@ -86,6 +96,7 @@ void GridWitness::sample() {
   if (wanted_.disagreement) sample_disagreement();
   for (Watched& watched : watched_) {
     sample(watched.agent, watched.estimator->belief());
+    sample_ledger(watched);
     if (!watched.found && finds_all(watched.estimator->belief())) watched.found = now;
   }
 }
@@ -143,6 +154,20 @@ void GridWitness::sample_alarms(AgentId agent, const GridBelief& belief) {
     for (std::size_t k = 0; k < marks_.size(); ++k) hearsay += marks_[k] > central_marks_[k];
     keep(agent, subject, "cells_hearsay", hearsay);
   }
+}
+
+void GridWitness::sample_ledger(const Watched& watched) {
+  if (!wanted_.multiplicity_mean && !wanted_.multiplicity_max && !wanted_.multiplicity_share)
+    return;
+  const grid::LookMultiplicity counted = grid::multiplicity(watched.estimator->ledger(), book_);
+  const NameId whole = simulation_.record().name("");
+  const bool any = counted.looks > 0;
+  const auto leave = [&](bool wanted, const char* name, double value) {
+    if (wanted) keep(watched.agent, whole, name, any ? value : none);
+  };
+  leave(wanted_.multiplicity_mean, "multiplicity_mean", counted.mean);
+  leave(wanted_.multiplicity_max, "multiplicity_max", counted.max);
+  leave(wanted_.multiplicity_share, "multiplicity_share", counted.share_above_one);
 }
 
 void GridWitness::sample_disagreement() {

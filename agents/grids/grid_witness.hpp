@@ -27,6 +27,7 @@ class GridWitness {
     Duration period;                   ///< > 0: samples at 0, period, … and at the end
     std::vector<std::string> series;   ///< names of metrics kept over time; others are ignored
     bool grids = false;                ///< all cells of all grids at the end
+    bool ledger = true;                ///< keep ledgers and what follows from them
     std::function<Point(AgentId)> place_of;
   };
   /// `simulation` must outlive the witness.
@@ -35,8 +36,12 @@ class GridWitness {
   /// 1 for each cell with a target, else 0.
   std::span<const unsigned char> truth() const { return truth_; }
 
-  /// An agent looked now.
-  void looked(AgentId agent, std::span<const grid::CellLook> looks);
+  /// For estimators: where the riders of their messages come from; nullptr if ledgers are off.
+  RiderPool<GridRider>* riders() { return options_.ledger ? &riders_ : nullptr; }
+
+  /// An agent looked now. @return the looks' indices in the run's book, valid until the next call;
+  /// none if ledgers are off.
+  std::span<const std::uint32_t> looked(AgentId agent, std::span<const grid::CellLook> looks);
   /// From now on `agent`'s grid is compared. Agents in ascending number.
   void watch(AgentId agent, const GridEstimator& estimator);
 
@@ -54,6 +59,7 @@ class GridWitness {
   };
   struct Wanted {
     bool kl, entropy, disagreement, place;
+    bool multiplicity_mean, multiplicity_max, multiplicity_share;
     bool detected, false_alarms, position_error, cells_detected, cells_false, cells_hearsay;
     bool alarms() const {
       return detected || false_alarms || position_error || cells_detected || cells_false ||
@@ -64,6 +70,7 @@ class GridWitness {
   void sample();
   void sample(AgentId agent, const GridBelief& belief);
   void sample_alarms(AgentId agent, const GridBelief& belief);
+  void sample_ledger(const Watched& watched);
   void sample_disagreement();
   void keep(AgentId agent, NameId subject, const char* name, double value);
   /// True if it has an alarm at every target.
@@ -75,6 +82,9 @@ class GridWitness {
   Options options_;
   Wanted wanted_;
   std::vector<unsigned char> truth_;
+  RiderPool<GridRider> riders_;
+  grid::LookBook book_;
+  std::vector<std::uint32_t> indices_;  // of the looks just made
   GridBelief central_;
   std::optional<Time> central_found_;
   std::vector<Watched> watched_;

@@ -310,7 +310,7 @@ TEST(Allocation, DoesNotHappenInWarmLooksAtGrids) {
     look.judge(image, looks);
     grid::add(looks, bernoulli);
     gain += grid::expected_gain(bernoulli, look.in_view());
-    cells_in_view({{0.9, 0.1}, 40.0, 0.4}, pose, area, cells);
+    cells_in_view(grid::PresenceSensor{{0.9, 0.1}, 40.0, 0.4}, pose, area, cells);
     grid::presence_look(cells, true, looks);
     grid::add(looks, bernoulli);
     gain += static_cast<double>(finder.find(bernoulli, 0.5).size());

@@ -1,6 +1,7 @@
 #include "filters/grid/ledger.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -16,21 +17,25 @@ void require_shape(const Shape& shape) {
 }
 bool alike(const Shape& a, const Shape& b) { return a.cells == b.cells && a.layers == b.layers; }
 
+/// Within bounds. Compares bits, which for floats of one sign are in the order of the numbers:
+/// compilers vectorise it, and half the weights being 0 at random costs no branches.
 float kept(double weight) {
-  constexpr double least = 1e-30, greatest = 1e30;
-  const double bounded = std::clamp(weight, -greatest, greatest);
-  return std::fabs(bounded) < least ? 0.0F : static_cast<float>(bounded);
+  constexpr auto least = std::bit_cast<std::int32_t>(1e-30F);
+  constexpr auto greatest = std::bit_cast<std::int32_t>(1e30F);
+  const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(weight));
+  const auto size = static_cast<std::int32_t>(bits & 0x7fffffffU);
+  const std::int32_t bounded = size > greatest ? greatest : size;
+  const std::int32_t result = size < least ? 0 : bounded;
+  return std::bit_cast<float>(static_cast<std::uint32_t>(result) | (bits & 0x80000000U));
 }
 
-constexpr std::size_t block = 64;
-using Sums = std::array<double, block>;
-
-/// sums[k] += share·weights[from + k], as far as there are weights.
-void add(Sums& sums, double share, std::span<const float> weights, std::size_t from) {
+/// sums[k] += share·weights[from + k] for k < n, as far as there are weights.
+void add(double* sums, double share, std::span<const float> weights, std::size_t from,
+         std::size_t n) {
   if (from >= weights.size()) return;
   const float* const w = weights.data() + from;
-  const std::size_t n = std::min(block, weights.size() - from);
-  for (std::size_t k = 0; k < n; ++k) sums[k] += share * static_cast<double>(w[k]);
+  const std::size_t end = std::min(n, weights.size() - from);
+  for (std::size_t k = 0; k < end; ++k) sums[k] += share * static_cast<double>(w[k]);
 }
 
 }  // namespace
@@ -114,24 +119,30 @@ void LookLedger::take(std::size_t number, const Row& other) {
   if (row(number) != other) slot(number) = other;
 }
 
+std::span<const float> LookLedger::sum(const Terms& terms, std::size_t from, std::size_t size,
+                                       Block& out) {
+  const std::size_t n = std::min(block, size - from);
+  std::array<double, block> sums;
+  std::fill_n(sums.begin(), n, 0.0);
+  for (const Term& term : terms) add(sums.data(), term.share, term.weights, from, n);
+  for (std::size_t k = 0; k < n; ++k) out[k] = kept(sums[k]);
+  return std::span(out).first(n);
+}
+
 bool LookLedger::are_sum(std::span<const float> weights, const Terms& terms) {
+  Block out;
   for (std::size_t from = 0; from < weights.size(); from += block) {
-    Sums sums{};
-    for (const Term& term : terms) add(sums, term.share, term.weights, from);
-    const std::size_t n = std::min(block, weights.size() - from);
-    for (std::size_t k = 0; k < n; ++k) {
-      if (weights[from + k] != kept(sums[k])) return false;
-    }
+    const std::span<const float> part = sum(terms, from, weights.size(), out);
+    if (!std::equal(part.begin(), part.end(), weights.data() + from)) return false;
   }
   return true;
 }
 
 void LookLedger::write_sum(const Terms& terms, std::span<float> out) {
+  Block apart;  // since `out` may be one of the terms
   for (std::size_t from = 0; from < out.size(); from += block) {
-    Sums sums{};  // apart, since `out` may be one of the terms
-    for (const Term& term : terms) add(sums, term.share, term.weights, from);
-    const std::size_t n = std::min(block, out.size() - from);
-    for (std::size_t k = 0; k < n; ++k) out[from + k] = kept(sums[k]);
+    const std::span<const float> part = sum(terms, from, out.size(), apart);
+    std::copy(part.begin(), part.end(), out.data() + from);
   }
 }
 

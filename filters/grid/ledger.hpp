@@ -98,12 +98,16 @@ class LookLedger {
     std::span<const float> weights;
   };
   using Terms = std::array<Term, 3>;
+  static constexpr std::size_t block = 64;  // of weights summed at a time
+  using Block = std::array<float, block>;
 
   std::size_t numbers() const { return static_cast<std::size_t>(shape_.cells) * shape_.layers; }
   const Row& row(std::size_t number) const;
   Row& slot(std::size_t number);
   void take(std::size_t number, const Row& other);
   void put(std::size_t number, const Terms& terms);
+  static std::span<const float> sum(const Terms& terms, std::size_t from, std::size_t size,
+                                    Block& out);
   static bool are_sum(std::span<const float> weights, const Terms& terms);
   static void write_sum(const Terms& terms, std::span<float> out);
 

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "sim/kernel/error.hpp"
@@ -315,6 +317,50 @@ TEST(LookLedger, CopiesStayWhatTheyWere) {
   EXPECT_TRUE(weights(own, 40).empty());
   EXPECT_EQ(weights(heard, 40), std::vector{2.0F});
   EXPECT_EQ(weights(before, 0), std::vector{1.0F});
+}
+
+TEST(LookLedger, RowsOfAnyLengthAndSharesAreCombinedLookByLook) {
+  Stream random = stream("rows");
+  constexpr std::uint32_t looks = 200;
+  const auto ledger_of = [&](std::uint32_t length) {
+    LookLedger ledger({1, 1});
+    for (std::uint32_t k = 0; k < length; ++k) {
+      for (std::uint64_t times = random.below(4); times > 0; --times) ledger.looked(0, k);
+    }
+    return ledger;
+  };
+  const auto at = [](const std::vector<float>& row, std::size_t k) {
+    return k < row.size() ? static_cast<double>(row[k]) : 0.0;
+  };
+  const auto length = [&] { return static_cast<std::uint32_t>(random.below(looks)); };
+  for (int i = 0; i < 90; ++i) {
+    LookLedger own = ledger_of(length());
+    const LookLedger other = ledger_of(length()), common = ledger_of(length());
+    // At times a row that both sides have, or that is also the common one.
+    const LookLedger heard = i % 3 == 0 ? other : i % 3 == 1 ? own : common;
+    const std::vector<float> a = weights(own), b = weights(heard), c = weights(common);
+    const auto half = [&] { return 0.5 * static_cast<double>(random.below(4)); };
+    const Shares s{half(), half(), half()};
+    own.combine(0, std::span(&s, 1), heard, &common);
+    const std::vector<float> result = weights(own);
+    for (std::size_t k = 0; k < looks; ++k) {
+      ASSERT_EQ(at(result, k), s.own * at(a, k) + s.heard * at(b, k) - s.common * at(c, k)) << i;
+    }
+    EXPECT_LE(result.size(), std::max({a.size(), b.size(), c.size()}));
+    EXPECT_EQ(weights(heard), b);
+  }
+}
+
+TEST(LookLedger, OneWeightAmongManyIsEnoughToChangeARow) {
+  for (const std::uint32_t changed : {0U, 63U, 64U, 99U}) {
+    LookLedger own({1, 1}), heard({1, 1});
+    for (std::uint32_t k = 0; k < 100; ++k) own.looked(0, k);
+    heard.looked(0, changed);
+    own.combine(0, std::vector<Shares>{{1.0, 1.0, 0.0}}, heard);
+    std::vector<float> expected(100, 1.0F);
+    expected[changed] = 2.0F;
+    EXPECT_EQ(weights(own), expected);
+  }
 }
 
 TEST(LookLedger, WeightsBeyondAllBoundsStayFinite) {

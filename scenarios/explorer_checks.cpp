@@ -22,7 +22,10 @@ bool is_for_grids(const SensorSpec& sensor) {
 class ExplorerChecker {
  public:
   explicit ExplorerChecker(const ScenarioUnderCheck& file)
-      : file_(file), s_(file.scenario), explorers_(has_explorers(s_)) {}
+      : file_(file),
+        s_(file.scenario),
+        explorers_(has_explorers(s_)),
+        places_(agent_positions(s_)) {}
 
   void all() {
     check_world();
@@ -53,6 +56,8 @@ class ExplorerChecker {
   void check_image(const SensorSpec& sensor, const KeyPath& path) const;
   void check_way(const AgentSpec& agent, const KeyPath& path) const;
   void check_exploration(const ExplorationSpec& exploration, const KeyPath& path) const;
+  /// Whose entry an agent is of.
+  const AgentSpec* entry_of(std::size_t agent) const;
   [[noreturn]] void fail(const KeyPath& path, const std::string& why) const {
     file_.fail(path, why);
   }
@@ -60,6 +65,7 @@ class ExplorerChecker {
   const ScenarioUnderCheck& file_;
   const Scenario& s_;
   bool explorers_;
+  std::vector<std::optional<std::array<double, 2>>> places_;
   KeyPath top_;
   KeyPath agents_ = top_["agents"];
   const GridSpec* first_ = nullptr;
@@ -305,11 +311,20 @@ void ExplorerChecker::check_way(const AgentSpec& agent, const KeyPath& path) con
     fail(exploration["choice"], "\"gain\" is that of a look, and there is no sensor");
   }
   check_exploration(*agent.exploration, exploration);
-  if (agent.position_m &&
-      !area_of(s_.world).at({agent.position_m->at(0), agent.position_m->at(1)})) {
-    fail(path["position_m"], "an explorer begins inside world.area");
+  const KeyPath place = path[agent.circle ? "circle" : "position_m"];
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    if (entry_of(i) != &agent || !places_[i]) continue;
+    const auto& [x, y] = *places_[i];
+    if (!area_of(s_.world).at({x, y})) fail(place, "an explorer begins inside world.area");
   }
-  if (agent.circle) fail(path["circle"], "explorers that are steered have position_m");
+}
+
+const AgentSpec* ExplorerChecker::entry_of(std::size_t agent) const {
+  for (const AgentSpec& entry : s_.agents) {
+    if (agent < static_cast<std::size_t>(entry.count)) return &entry;
+    agent -= static_cast<std::size_t>(entry.count);
+  }
+  return nullptr;
 }
 
 void ExplorerChecker::check_exploration(const ExplorationSpec& exploration,

@@ -15,8 +15,8 @@ double entropy_of(double p, double q) { return -p * math::log(p) - q * math::log
 
 }  // namespace
 
-// The fall of the cell's entropy by the answer is the fall of the answer's entropy by the cell (both
-// are their mutual information): fewer logarithms, and none of them of odds.
+// The fall of the cell's entropy by the answer is that of the answer's entropy by the cell: both
+// are their mutual information. So there are fewer logarithms, and none of them of odds.
 double expected_gain(double log_odds, const Detector& detector) {
   const double small = math::exp(-std::fabs(log_odds));
   const double likely = 1.0 / (1.0 + small), unlikely = small / (1.0 + small);

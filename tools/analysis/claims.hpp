@@ -9,8 +9,9 @@
 //
 // Who and when. Every agent ("each"), their mean or their largest in a run, one of them, or the
 // central filter; at the last instant, at all, or at one. Several subjects are averaged in a run,
-// except for measures of consistency (…nees) and of alarms (alarm…, cells_…: a threshold each), where
-// each is a comparison of its own, and for those that `subjects` names. Under at = "all" the instants before a comparison's first value do not count.
+// except for measures of consistency (…nees) and of alarms (alarm…, cells_…: a threshold each),
+// where each is a comparison of its own, and for those that `subjects` names. Under at = "all" the
+// instants before a comparison's first value do not count.
 //
 // Over repetitions, `statistic`:
 //   auto      root mean square for errors (rms_error_m, velocity_error_m_per_s, x_error_m,

@@ -154,12 +154,13 @@ class Builder {
 
   std::vector<int> subjects(const CellRuns& cell) {
     if (column() == nullptr || !column()->is_series()) return {all_subjects};
-    if (!expect_.subjects.empty()) return named_subjects(column()->subjects(cell.runs.begin()->second));
+    const auto present = [&] { return column()->subjects(cell.runs.begin()->second); };
+    if (!expect_.subjects.empty()) return named_subjects(present());
     if (!rules_.metric.each_subject) {
       subjects_averaged_ = subjects_averaged_ || values_.subjects().size() > 1;
       return {all_subjects};
     }
-    return column()->subjects(cell.runs.begin()->second);
+    return present();
   }
 
   std::vector<int> named_subjects(const std::vector<int>& present) const {

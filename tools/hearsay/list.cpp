@@ -10,6 +10,7 @@
 #include "agents/estimators/shared_trajectories.hpp"
 #include "agents/metrics.hpp"
 #include "filters/gaussian/fusion.hpp"
+#include "filters/grid/fusion.hpp"
 #include "scenarios/describe_localizer.hpp"
 #include "scenarios/describe_tracker.hpp"
 #include "scenarios/radio_models.hpp"
@@ -64,6 +65,33 @@ std::string goes_with(const gaussian::RuleInfo& rule) {
   return text;
 }
 
+const char* text_of(grid::Sends sends) {
+  using grid::Sends;
+  switch (sends) {
+    case Sends::nothing:
+      return "nothing";
+    case Sends::evidence:
+      return "its evidence of all cells, of those that changed, or in runs; one broadcast";
+    case Sends::evidence_less_heard:
+      return "to each neighbour its evidence less what that one said last";
+  }
+  return "";
+}
+
+Json rule_of_grids(const grid::RuleInfo& rule) {
+  const char* const beliefs = !rule.beta       ? "bernoulli"
+                              : rule.bernoulli ? "bernoulli, beta"
+                                               : "beta";
+  return {{"name", rule.name},
+          {"goes with", std::string("explorer: ") + beliefs},
+          {"sends", text_of(rule.sends)},
+          {"assumes", rule.assumes},
+          {"conservative", rule.conservative},
+          {"ledger", rule.ledger},
+          {"cost", rule.cost},
+          {"source", rule.source}};
+}
+
 Json rules() {
   Json out = Json::array();
   for (const gaussian::RuleInfo& rule : gaussian::rules()) {
@@ -76,6 +104,7 @@ Json rules() {
                    {"cost", rule.cost},
                    {"source", rule.source}});
   }
+  for (const grid::RuleInfo& rule : grid::rules()) out.push_back(rule_of_grids(rule));
   return out;
 }
 

@@ -196,6 +196,7 @@ class Selection:
             rows.append((run, cell_keys.setdefault(key, len(cell_keys)), place[repetition]))
         self.cells = [dict(zip(axes, key)) for key in cell_keys]
         self.repetitions = len(repetitions)
+        self._runs = {(cell, repetitions[place]): run for run, cell, place in rows}
         database.rows("DROP TABLE IF EXISTS temp.chosen")
         database.rows(
             "CREATE TEMP TABLE chosen(run INTEGER PRIMARY KEY, cell INTEGER, repetition INTEGER,"
@@ -237,21 +238,23 @@ class Selection:
                 return i
         return None
 
-    def series(self, names, at_end=False):
-        """Series by name, with all instants or, `at_end`, the last one alone.
-        @raises UserError if none of these runs has one of the names."""
+    def series(self, names, at_end=False, subject=None):
+        """Series by name, with all instants or, `at_end`, the last one alone; over all subjects or
+        about one. @raises UserError if none of these runs has one of the names."""
         condition = f"s.name IN ({', '.join('?' * len(names))})"
         if at_end:
-            self._note_ends()
+            self.note_ends()
             condition += " AND s.t_s = c.end_s"
         values = "s.value"
-        if self._has_many_subjects(names):  # let SQLite sum over them: fewer rows to hand over
+        if subject is not None:
+            condition += " AND s.subject = ?"
+        elif self._has_many_subjects(names):  # let SQLite sum over them: fewer rows to hand over
             values = "TOTAL(s.value), TOTAL(s.value * s.value), COUNT(s.value), COUNT(*)"
             condition += " GROUP BY c.run, s.t_s, s.agent, s.name"
         rows = self._database.rows(
             f"SELECT s.name, c.cell, c.repetition, s.t_s, s.agent, {values}"
             f" FROM temp.chosen c CROSS JOIN series s ON s.run = c.run WHERE {condition}",
-            tuple(names),
+            (*names, *([] if subject is None else [subject])),
         )
         found = {}
         if rows:
@@ -276,6 +279,34 @@ class Selection:
                 )
         return found
 
+    def subjects(self, name):
+        """What the first of these runs says a series is about, in the order of its rows."""
+        rows = self._database.rows(
+            "SELECT DISTINCT subject FROM series WHERE run = (SELECT MIN(run) FROM temp.chosen)"
+            " AND name = ?",
+            (name,),
+        )
+        return [subject for (subject,) in rows]
+
+    def run(self, cell, repetition):
+        """Number of the run of a cell. @raises UserError if it did not finish or is not there."""
+        if (cell, repetition) not in self._runs:
+            known = sorted(r for c, r in self._runs if c == cell)
+            there = f"{known[0]} … {known[-1]}" if known else "none"
+            raise UserError(
+                f"{self._database.file}: no finished repetition {repetition}; there are: {there}"
+            )
+        return self._runs[cell, repetition]
+
+    def rows(self, sql, parameters=()):
+        """Of the database; temp.chosen(run, cell, repetition, end_s) are these runs."""
+        return self._database.rows(sql, parameters)
+
+    @property
+    def file(self):
+        """The database's name."""
+        return self._database.file
+
     def _has_many_subjects(self, names):
         return 1 < self._database.rows(
             "SELECT COUNT(DISTINCT subject) FROM series"
@@ -283,7 +314,7 @@ class Selection:
             (names[0],),
         )[0][0]
 
-    def _note_ends(self):
+    def note_ends(self):
         """Writes its last instant beside each run; that of a cell's first run holds for all."""
         self._database.rows(
             "CREATE TEMP TABLE IF NOT EXISTS cell_end AS SELECT cell,"
@@ -404,8 +435,12 @@ class Series:
         self._parts = {}
 
     def of(self, array, agents):
-        """"total", "squares", "count" or "asked" for "agents" or "central" alone."""
+        """"total", "squares", "count" or "asked" for "agents", "central" or the agent of a number
+        alone."""
         if (array, agents) not in self._parts:
-            chosen = self.agents == CENTRAL if agents == "central" else self.agents >= 0
+            if agents == "agents":
+                chosen = self.agents >= 0
+            else:
+                chosen = self.agents == (CENTRAL if agents == "central" else agents)
             self._parts[array, agents] = getattr(self, array)[..., chosen]
         return self._parts[array, agents]

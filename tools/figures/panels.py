@@ -10,7 +10,7 @@ from matplotlib.patches import Patch
 
 import stats
 import style
-from data import UserError
+from data import UserError, label_text
 
 # So many of the beliefs at an instant may be undefined (indefinite, or no estimate yet) before the
 # curve breaks off: what is left over would not speak for the fleet.
@@ -54,13 +54,20 @@ def rms(series, cell, agents="agents", interval=False):
     return curve
 
 
-def mean(series, cell, agents="agents"):
-    """Mean over repetitions, agents and subjects."""
-    total, count, asked = (
-        series.of(a, agents)[cell].sum(axis=(0, -1))
+def mean(series, cell, agents="agents", interval=False):
+    """Mean over repetitions, agents and subjects, with a 95 % bootstrap interval over repetitions."""
+    totals, counts, asked = (
+        series.of(a, agents)[cell].sum(axis=-1)  # [repetition, t]
         for a in ("total", "count", "asked")
     )
-    return Curve(*_broken(_ratio(total, count), count, asked))
+    total, count = totals.sum(axis=0), counts.sum(axis=0)
+    curve = Curve(*_broken(_ratio(total, count), count, asked.sum(axis=0)))
+    if interval:
+        keep = np.isfinite(curve.value)
+        curve.low, curve.high = (
+            np.where(keep, a, np.nan) for a in stats.ratio_interval(totals, counts)
+        )
+    return curve
 
 
 def anees(series, claimed, cell, dimension, agents="agents"):
@@ -109,6 +116,71 @@ def finite(arrays, what):
     if len(values) == 0:
         raise UserError(f"no {what} is defined in these runs; nothing to draw")
     return values
+
+
+def chosen_labels(chosen, axis, text):
+    """Labels of an axis that "A;B" names, all for an empty text.
+    @raises UserError for one that is not there."""
+    known = chosen.labels(axis)
+    wanted = [label_text(label) for label in text.split(";") if label.strip()]
+    for label in wanted:
+        if label not in known:
+            raise UserError(f"axis {axis} has no {label!r}; it has: {', '.join(known)}")
+    return wanted or known
+
+
+def names_in(text, option):
+    """["a", "b"] of "a;b". @raises UserError without any."""
+    names = [name.strip() for name in text.split(";") if name.strip()]
+    if not names:
+        raise UserError(f"{option}: no name given")
+    return list(dict.fromkeys(names))
+
+
+# metric of certainty grids: what it says, what it says in two short lines
+METRICS = {
+    "kl_to_central_nats": ("divergence from the central grid [nats]", "from the central\ngrid [nats]"),
+    "entropy_nats": ("entropy [nats]", "entropy\n[nats]"),
+    "disagreement_probability": ("largest difference of two vehicles", "largest difference\nof two vehicles"),
+    "alarms_detected_share": ("share of targets with an alarm", "targets with\nan alarm"),
+    "alarms_false": ("false alarms", "false alarms"),
+    "alarm_error_m": ("error of alarms [m]", "error of\nalarms [m]"),
+    "cells_detected_share": ("P_D: share of target cells found", "P_D by cell"),
+    "cells_false_share": ("P_F: share of empty cells with an alarm", "P_F by cell"),
+    "cells_hearsay": ("cells alarmed by hearsay alone", "cells alarmed by\nhearsay alone"),
+    "alarms_found_s": ("time until all targets are found [s]", "all targets\nfound [s]"),
+    "cells_seen_share": ("share of cells a vehicle looked at", "cells a vehicle\nlooked at"),
+    "agents_a_cell": ("vehicles that looked at a cell", "vehicles that\nlooked at a cell"),
+    "distance_flown_m": ("way of a vehicle [m]", "way of a\nvehicle [m]"),
+    "bytes_sent": ("bytes a vehicle sent", "bytes a\nvehicle sent"),
+}
+
+
+def metric_name(metric, threshold=None, short=False):
+    """A metric as a reader says it."""
+    name = METRICS.get(metric, (metric, metric))[short].replace("P_D", "$P_D$").replace("P_F", "$P_F$")
+    return name if threshold is None else f"{name}, over {threshold}"
+
+
+def threshold_subject(chosen, metric, threshold):
+    """The subject of a metric's rows: that threshold, or None for one that has no thresholds.
+    @raises UserError if it was recorded for other thresholds."""
+    known = [subject for subject in chosen.subjects(metric) if subject]
+    if not known:
+        return None
+    for subject in known:
+        if label_text(subject) == label_text(threshold):
+            return subject
+    raise UserError(f"{metric} was not recorded for threshold {threshold}, but for {', '.join(known)}")
+
+
+def wants_log(values):
+    """Whether values are better seen on a logarithmic axis: none is negative, and the positive ones span
+    decades."""
+    positive = np.sort(values[values > 0.0])
+    if len(positive) == 0 or (values < 0.0).any():
+        return False
+    return positive[-1] > 50.0 * positive[len(positive) // 20]
 
 
 def last(values):
@@ -207,13 +279,27 @@ def legend(figure, anchor, entries, columns):
     )
 
 
-def write_caption(figure, left, sentences):
-    """What the runs were and how to read the figure, in small lines at the bottom."""
-    size = 7.5
-    width = (0.985 - left) * figure.get_figwidth() * 72.0 / (0.53 * size)  # in letters
+CAPTION_PT = 7.5
+CAPTION_LINE_IN = CAPTION_PT * 1.35 / 72.0
+
+
+def _caption_lines(width_in, left, sentences):
+    width = (0.985 - left) * width_in * 72.0 / (0.53 * CAPTION_PT)  # in letters
+    return textwrap.wrap(" ".join(sentences), int(width))
+
+
+def caption_room(width_in, left, sentences):
+    """By how many inches the place of a caption must be higher than usual, to hold these sentences."""
+    return max(0, len(_caption_lines(width_in, left, sentences)) - 3) * CAPTION_LINE_IN
+
+
+def write_caption(figure, left, sentences, room_in=0.0):
+    """What the runs were and how to read the figure, in small lines at the bottom. `room_in`: that of
+    caption_room(), for which there is place below the legend."""
     figure.text(
-        left, 0.46 / figure.get_figheight(), textwrap.fill(" ".join(sentences), int(width)),
-        fontsize=size, va="top", ha="left", color="#333333", linespacing=1.35,
+        left, (0.46 + room_in) / figure.get_figheight(),
+        "\n".join(_caption_lines(figure.get_figwidth(), left, sentences)),
+        fontsize=CAPTION_PT, va="top", ha="left", color="#333333", linespacing=1.35,
     )
 
 

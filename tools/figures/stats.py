@@ -117,3 +117,24 @@ def ratio_interval(totals, counts, alpha=0.05, resamples=2000, seed=1):
     low, high = np.quantile(means, [alpha / 2.0, 1.0 - alpha / 2.0], axis=0, method="nearest")
     shape = totals.shape[1:]
     return (np.where(np.isfinite(a), a, np.nan).reshape(shape) for a in (low, high))
+
+
+def median_interval(values, alpha=0.05, resamples=2000, seed=1):
+    """(median, low, high) of all values but NaN, by a percentile bootstrap over repetitions (axis
+    0); infinite ones count as the largest. The lower of two medians. NaN where unknown."""
+    known = ~np.isnan(values)
+    if not known.any():
+        return math.nan, math.nan, math.nan
+    order = np.argsort(values[known], kind="stable")
+    ranked, repetition = values[known][order], np.nonzero(known)[0][order]
+
+    def median(weights):
+        above = np.cumsum(weights[..., repetition], axis=-1)
+        return ranked[np.argmax(2.0 * above >= above[..., -1:], axis=-1)]
+
+    middle = float(median(np.ones(len(values))))
+    if len(values) < 2:
+        return middle, math.nan, math.nan
+    medians = np.sort(median(_resamples(len(values), resamples, seed)))
+    last = resamples - 1
+    return middle, medians[int(alpha / 2.0 * last)], medians[round((1.0 - alpha / 2.0) * last)]

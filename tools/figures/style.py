@@ -27,7 +27,19 @@ _RULES = {
     "ci-det": (BLUE, "o"),
     "ci-trace": (SKY, "D"),
     "most-certain": (PURPLE, "P"),
+    # of certainty grids
+    "maximum": (BLUE, "o"),
+    "strongest": (SKY, "D"),
+    "dictatorship": (PURPLE, "P"),
+    "geometric-mean": (PURPLE, "h"),
+    "linear-pool": (SKY, "p"),
+    "elementwise-maximum": (BLUE, "H"),
+    "averaged-parameters": (SKY, "d"),
 }
+# Who shares a colour with a rule of the same figure is dashed.
+_DASHED = ("geometric-mean", "linear-pool", "elementwise-maximum", "averaged-parameters")
+# of vehicles, beside one another on a map
+AGENTS = (BLUE, ORANGE, GREEN, PURPLE, SKY, VERMILLION, GREY, BLACK)
 _OTHERS = ((PURPLE, "X"), (BLACK, "*"), (GREEN, "<"), (ORANGE, "h"), (SKY, ">"), (BLUE, "p"), (GREY, "H"),
            (VERMILLION, "d"))
 
@@ -60,10 +72,18 @@ RC = {
 }
 
 
+def apply():
+    """From now on artists look so, whatever the user's own matplotlibrc says."""
+    matplotlib.rcdefaults()
+    matplotlib.rcParams.update(RC)
+
+
+apply()  # legend entries may be made before their figure
+
+
 def new_figure(width_in, height_in):
     """A figure in this style. It needs no display."""
-    matplotlib.rcdefaults()  # whatever the user's own matplotlibrc says
-    matplotlib.rcParams.update(RC)
+    apply()
     figure = Figure(figsize=(width_in, height_in))
     FigureCanvasAgg(figure)
     return figure
@@ -77,6 +97,15 @@ def rule_style(rule, rules):
     taken = {_RULES[r][0] for r in rules if r in _RULES}
     free = sorted(_OTHERS, key=lambda look: look[0] in taken)  # colours that nobody has yet come first
     return free[others.index(rule) % len(free)]
+
+
+def rule_dash(rule):
+    return (0, (4.0, 1.4)) if rule in _DASHED else "-"
+
+
+def agent_colors(agents):
+    """{number: colour} of some agents."""
+    return {agent: AGENTS[i % len(AGENTS)] for i, agent in enumerate(agents)}
 
 
 def number(value, digits=2):

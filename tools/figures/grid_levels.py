@@ -20,10 +20,11 @@ import stats
 import style
 
 MEDIANS = ("alarms_found_s",)  # infinite in runs that never get there
+KILO = ("bytes_sent",)  # drawn in thousands
 ALONE = "none"  # who hears nobody is the same whatever the radio does: studies may run it once
 SPAN = 20.0  # numbers on an axis that span more are spaced by their logarithms
 # Axis of the study: what stands below the panels.
-TITLES = {"loss": "share of packets lost", "vehicles": "vehicles", "agents": "vehicles", "topology": "topology"}
+TITLES = {"loss": "share of packets lost", "agents": "vehicles", "talk": "time between talks [s]"}
 
 
 class Metric:
@@ -54,6 +55,7 @@ class Metric:
             curve = panels.mean(self._series, cell, "central" if central else "agents", interval=True)
             return curve.value[0], curve.low[0], curve.high[0]
         values = np.array([v[cell] for a, v in sorted(self._scalar.items()) if (a < 0) == central]).T
+        values = values * (1e-3 if self.name in KILO else 1.0)
         if self.median:
             return stats.median_interval(values)
         known = np.isfinite(values)
@@ -215,21 +217,15 @@ def title_of(levels):
     return name + (" (spaced by logarithms)" if levels.places()[2] else "")
 
 
-def column_title(axis, label):
-    if axis == "topology":
-        return label
-    return f"{data.percent(label)} loss" if axis == "loss" else f"{axis} {label}"
-
-
 def draw(levels, entries):
     """The figure, with a legend of these entries."""
     rows, columns = len(levels.metrics), len(levels.panels)
     names = [data.percent(l) if levels.over == "loss" else l for l in levels.levels]
     long = not numeric(levels.levels) and max(map(len, names)) * len(names) > 30
-    width = max(3.0 * columns + 0.95, 7.6)
+    width = max(3.0 * columns + 1.0, 7.6)
     per_line = max(2, int((width - 0.8) / 1.35))
     lines = math.ceil(len(entries) / per_line)
-    left = 0.85 / width
+    left = 0.9 / width
     scales = [ValueAxis(all_values(levels, metric)) for metric in levels.metrics]
     sentences = caption(levels, scales)
     room = panels.caption_room(width, left, sentences)
@@ -245,7 +241,7 @@ def draw(levels, entries):
             level_axis(axes, levels, i == rows - 1)
             axes.tick_params(labelleft=j == 0)
             if i == 0 and name is not None:
-                axes.set_title(column_title(levels.columns, name), fontweight="bold", loc="left", pad=4)
+                axes.set_title(panels.label_name(levels.columns, name), fontweight="bold", loc="left", pad=4)
             if j == 0:
                 axes.set_ylabel(panels.metric_name(metric.name, metric.subject, short=True)
                                 + (" (log)" if axis.log else ""))
@@ -300,7 +296,7 @@ def main():
     entries = []
     for label in labels if by else []:
         color, marker = style.rule_style(label, labels)
-        entries.append(panels.line_entry(style.rule_dash(label), color, label, marker))
+        entries.append(panels.line_entry(style.rule_dash(label), color, panels.label_name(by, label), marker))
     if any(m.has_central for m in metrics):
         entries.append(panels.line_entry("-", style.BLACK, "central grid"))
     style.write(draw(levels, entries), arguments.output)

@@ -30,7 +30,6 @@ LAYERS = {
     "cell_beta": "β: looks that saw none",
 }
 BETA = ("cell_alpha", "cell_beta", "cell_probability")
-COLUMNS_MAX = 4
 LOG_FROM = 30.0  # counts that span more are on a logarithmic scale
 NEAR = 1e-6  # a cell so near a threshold may lie on either side of it
 UNKNOWN = "#f3d9d9"
@@ -111,23 +110,25 @@ class Run:
         return regions.find(self.layers["cell_probability"], threshold, self.world.centres())
 
 
-def map_panel(axes, run, layer, scale, colors, agent, alarms):
-    """One layer of a grid, with targets, ways and alarms."""
+def map_panel(axes, run, layer, scale, colors, agent, alarms, cell_pt):
+    """One layer of a grid, with targets, ways and alarms. A cell is `cell_pt` wide on paper."""
     w = run.world
     image = axes.imshow(run.layers[layer], origin="lower", extent=w.extent, cmap=greys(), norm=scale,
                         interpolation="nearest", zorder=1)
-    for row, column in np.argwhere(w.truth()):
-        corner = w.origin_m + w.cell_m * np.array([column, row])
-        for color, width in (("white", 3.2), (style.VERMILLION, 1.8)):
-            axes.add_patch(Rectangle(corner, w.cell_m, w.cell_m, fill=False, ec=color, lw=width, zorder=7))
+    thin = min(1.0, cell_pt / 10.0)  # small cells have thin outlines
+    corners = [w.origin_m + w.cell_m * np.array([column, row]) for row, column in np.argwhere(w.truth())]
+    for zorder, casing in ((5, 1.4 * thin), (6, None)):
+        for corner in corners:
+            axes.add_patch(Rectangle(corner, w.cell_m, w.cell_m, fill=False, zorder=zorder,
+                                     ec="white" if casing else style.VERMILLION, lw=1.8 * thin + (casing or 0.0)))
+        for region in alarms:
+            axes.add_patch(regions.ellipse(region, w.cell_m, fill=False, ec="white" if casing else style.BLACK,
+                                           lw=1.5 * thin + (casing or 0.0), zorder=zorder + 0.5))
     for who, (x, y) in sorted(run.ways.items()):
         width = 1.7 if who == agent else 1.0
         axes.plot(x, y, color=colors[who], lw=width, zorder=3, solid_joinstyle="round",
                   path_effects=[withStroke(linewidth=width + 1.4, foreground="white", alpha=0.8)])
         axes.plot(x[:1], y[:1], "o", color=colors[who], ms=6.0, mec="white", mew=1.0, zorder=4, clip_on=False)
-    for region in alarms:
-        for color, width in (("white", 3.2), (style.BLACK, 1.6)):
-            axes.add_patch(regions.ellipse(region, w.cell_m, fill=False, ec=color, lw=width, zorder=6))
     x0, x1, y0, y1 = w.extent
     axes.set_xlim(x0, x1)
     axes.set_ylim(y0, y1)
@@ -147,19 +148,19 @@ def scale_of(values, layer):
     return Normalize(low, high if high > low else low + 1.0)
 
 
-def columns_of(panels_count, layers):
+def columns_of(panels_count, layers, at_most):
     if layers > 1:
         return layers
-    rows = math.ceil(panels_count / COLUMNS_MAX)
+    rows = math.ceil(panels_count / at_most)
     return math.ceil(panels_count / rows)
 
 
-def draw(runs, layers, agent, threshold, colors, entries):
+def draw(runs, by, layers, agent, threshold, colors, entries):
     """(figure, left edge) of a panel a run and layer, with a legend."""
     aspect = next(iter(runs.values())).world
-    columns = columns_of(len(runs), len(layers))
+    wide, bar = min(max(0.13 * aspect.columns, 3.0), 4.4), 0.95
+    columns = columns_of(len(runs), len(layers), int(12.5 / wide))
     rows = math.ceil(len(runs) * len(layers) / columns)
-    wide, bar = 3.0, 0.95
     high = wide * aspect.rows / aspect.columns
     width = max(wide * columns + 0.35 * (columns - 1) + 0.75 + (0.1 if len(layers) > 1 else bar), 6.6)
     fit = min(max(2, int((width - 0.8) / 1.3)), len(entries))
@@ -179,14 +180,15 @@ def draw(runs, layers, agent, threshold, colors, entries):
         axes = figure.add_subplot(grid[i, j])
         run = runs[label]
         alarms = run.alarms(threshold) if layer == "cell_probability" else []
-        image = map_panel(axes, run, layer, scales[layer], colors, agent, alarms)
+        image = map_panel(axes, run, layer, scales[layer], colors, agent, alarms,
+                          72.0 * wide / aspect.columns)
         last[j] = image, axes, layer
         lowest = k + columns >= len(places)
         axes.tick_params(labelleft=j == 0, labelbottom=lowest)
         axes.set_ylabel("y [m]" if j == 0 else "", labelpad=1)
         axes.set_xlabel("x [m]" if lowest else "", labelpad=1)
         if j == 0 or len(layers) == 1:
-            axes.set_title(label, loc="left", fontweight="bold", pad=4)
+            axes.set_title(panels.label_name(by, label), loc="left", fontweight="bold", pad=4)
         if layer == "cell_probability":
             count = len(alarms)
             axes.set_title(f"{count} alarm{'' if count == 1 else 's'}", loc="right", fontsize=8.5, pad=4)
@@ -261,7 +263,7 @@ def main():
         panels.line_entry("", style.BLACK, f"alarm over {arguments.threshold:g}, 2 σ", "o", mfc="none", ms=8.0,
                           mew=1.6),
     ]
-    figure, left = draw(runs, layers, agent, arguments.threshold, colors, entries)
+    figure, left = draw(runs, by, layers, agent, arguments.threshold, colors, entries)
     panels.write_caption(figure, left, caption(chosen, arguments, runs[labels[0]], by, name))
     style.write(figure, arguments.output)
 

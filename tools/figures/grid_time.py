@@ -84,8 +84,9 @@ def panel(axes, developments, metric, label, colors):
     of_all = developments.of_all(metric, label)
     vehicles = developments.vehicles(metric)
     axes.fill_between(t_s, shown(of_all.low), shown(of_all.high), color=style.GREY, alpha=0.3, lw=0.0, zorder=2)
-    for agent in vehicles:
-        axes.plot(t_s, shown(developments.of_vehicle(metric, label, agent)), color=colors[agent], lw=1.2, zorder=3)
+    for k, agent in enumerate(vehicles):  # the wider lie below, so that equal ones are all seen
+        axes.plot(t_s, shown(developments.of_vehicle(metric, label, agent)), color=colors[agent],
+                  lw=0.9 + 0.7 * (len(vehicles) - 1 - k), zorder=3)
     central = developments.central(metric, label)
     if central is not None:
         axes.plot(t_s, shown(central), color=style.BLACK, lw=1.4, ls="--", zorder=4)
@@ -100,11 +101,12 @@ def draw(developments, colors):
     blocks = math.ceil(len(labels) / COLUMNS_MAX)
     columns = math.ceil(len(labels) / blocks)
     rows = blocks * len(metrics)
-    width, height = max(2.3 * columns + 1.0, 6.6), 2.0 * rows + 1.55
+    width, height = max(2.3 * columns + 1.0, 6.6), 2.0 * rows + 0.35 * (blocks - 1) + 1.55
     figure = style.new_figure(width, height)
-    left = 0.8 / width
-    grid = figure.add_gridspec(rows, columns, left=left, right=0.99, top=1 - 0.35 / height, bottom=1.22 / height,
-                               wspace=0.08, hspace=0.3 if blocks > 1 else 0.14)
+    left = 0.86 / width
+    outer = figure.add_gridspec(blocks, 1, left=left, right=0.99, top=1 - 0.35 / height, bottom=1.22 / height,
+                                hspace=0.6 / (2.0 * len(metrics)))
+    grids = [part.subgridspec(len(metrics), columns, wspace=0.08, hspace=0.14) for part in outer]
     logarithmic = []
     for m, metric in enumerate(metrics):
         values = developments.values(metric)
@@ -112,15 +114,14 @@ def draw(developments, colors):
             logarithmic.append(metric)
         for k, label in enumerate(labels):
             block, column = divmod(k, columns)
-            row = block * len(metrics) + m
-            axes = figure.add_subplot(grid[row, column])
+            axes = figure.add_subplot(grids[block][m, column])
             value_axis(axes, values, metric in logarithmic)
             panel(axes, developments, metric, label, colors)
             lowest = m == len(metrics) - 1
             axes.tick_params(labelleft=column == 0, labelbottom=lowest)
             axes.set_xlabel("time [s]" if lowest and k + columns >= len(labels) else "", labelpad=1.5)
             if m == 0:
-                axes.set_title(label, fontweight="bold", loc="left", pad=4)
+                axes.set_title(panels.label_name(developments.by, label), fontweight="bold", loc="left", pad=4)
             if column == 0:
                 axes.set_ylabel(panels.metric_name(metric, developments.subjects[metric], short=True))
     return figure, left, logarithmic

@@ -10,7 +10,7 @@ from matplotlib.patches import Patch
 
 import stats
 import style
-from data import UserError, label_text
+from data import UserError, label_text, percent
 
 # So many of the beliefs at an instant may be undefined (indefinite, or no estimate yet) before the
 # curve breaks off: what is left over would not speak for the fleet.
@@ -129,6 +129,13 @@ def chosen_labels(chosen, axis, text):
     return wanted or known
 
 
+def label_name(axis, label):
+    """A label as a reader says it: of a rule its name, of loss 30 % loss, else with its axis before it."""
+    if axis in ("rule", "topology"):
+        return label
+    return f"{percent(label)} loss" if axis == "loss" else f"{axis} {label}"
+
+
 def names_in(text, option):
     """["a", "b"] of "a;b". @raises UserError without any."""
     names = [name.strip() for name in text.split(";") if name.strip()]
@@ -152,7 +159,7 @@ METRICS = {
     "cells_seen_share": ("share of cells a vehicle looked at", "cells a vehicle\nlooked at"),
     "agents_a_cell": ("vehicles that looked at a cell", "vehicles that\nlooked at a cell"),
     "distance_flown_m": ("way of a vehicle [m]", "way of a\nvehicle [m]"),
-    "bytes_sent": ("bytes a vehicle sent", "bytes a\nvehicle sent"),
+    "bytes_sent": ("kB a vehicle sent", "kB a\nvehicle sent"),
 }
 
 

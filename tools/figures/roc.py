@@ -19,7 +19,8 @@ import panels
 import style
 
 SPAN = 30.0  # from so much on P_F is on a logarithmic axis
-LABELLED = (0.1, 0.5, 0.8, 0.9, 0.99)  # thresholds that are written beside a curve, the nearest of each
+LABELLED = (0.5, 0.8, 0.1, 0.99)  # thresholds that are written beside a curve, the nearest of each
+FEW = 4  # beside more curves the first two of them
 DETECTED, FALSE = "cells_detected_share", "cells_false_share"
 
 
@@ -119,7 +120,7 @@ def points(axes, x, y, color, marker, hollow):
 
 
 def curve_panel(axes, curves, axis):
-    """P_D against P_F; returns the labelled points."""
+    """P_D against P_F; returns all points, with what is to be written beside them."""
     axis.apply(axes, "x")
     axes.set_ylim(-0.02, 1.03)
     detected, false = curves.central(DETECTED), curves.central(FALSE)
@@ -136,8 +137,10 @@ def curve_panel(axes, curves, axis):
         axes.vlines(x, d_low, d_high, color=color, lw=0.8, alpha=0.6, zorder=2)
         points(axes, x, d, color, marker, axis.log & (f <= 0.0))
         thresholds = np.array([float(t) for t in curves.thresholds])
-        for k in sorted({int(np.argmin(np.abs(thresholds - t))) for t in LABELLED}):
-            remarks.append((x[k], d[k], curves.thresholds[k], color))
+        wanted = LABELLED if len(curves.labels) <= FEW else LABELLED[:2]
+        nearest = {int(np.argmin(np.abs(thresholds - t))) for t in wanted}
+        for k, threshold in enumerate(curves.thresholds):
+            remarks.append((x[k], d[k], threshold if k in nearest else "", color))
     axes.set_xlabel("$P_F$: share of empty cells over the threshold" + (" (log)" if axis.log else ""))
     axes.set_ylabel("$P_D$: share of cells with a target over it")
     axes.set_title("Operating curves", loc="left", fontweight="bold")
@@ -152,7 +155,7 @@ def write_thresholds(axes, remarks):
     high, wide = 8.0, 5.0  # of text, in pixels at 100 dpi; a letter's width
     inside = axes.get_window_extent()
     for x, y, text, color in remarks:
-        if not np.isfinite(y):
+        if not text or not np.isfinite(y):
             continue
         px, py = place((x, y))
         length = wide * len(text)
@@ -182,7 +185,7 @@ def false_panel(axes, curves, axis):
     axis.apply(axes, "y")
     x = logit(curves.thresholds)
     span = x[-1] - x[0]
-    shift = 0.006 * span
+    shift = min(0.006, 0.03 / len(curves.labels)) * span
     central = curves.central(FALSE)
     if central is not None:
         axes.plot(x, axis.at(central), "-", color=style.BLACK, lw=1.4, zorder=2.5)
@@ -232,8 +235,11 @@ def main():
     values = [curves.of(FALSE, label)[0] for label in labels]
     central = curves.central(FALSE)
     axis = Axis(panels.finite(values + ([central] if central is not None else []), "P_F"))
-    entries = [panels.line_entry(style.rule_dash(l), style.rule_style(l, labels)[0], l, style.rule_style(l, labels)[1])
-               for l in labels]
+    entries = []
+    for label in labels:
+        color, marker = style.rule_style(label, labels)
+        name = panels.label_name(arguments.by, label)
+        entries.append(panels.line_entry(style.rule_dash(label), color, name, marker))
     if central is not None:
         entries.append(panels.line_entry("-", style.BLACK, "central grid"))
     lines = -(-len(entries) // 6)

@@ -39,6 +39,12 @@ class Places(WithGrids):
         self.assertEqual(len(np.unique(places[:, 0])), 200)
         np.testing.assert_allclose(places.mean(axis=0), [200.0, 50.0], atol=15.0)
 
+    def test_drawn_places_are_those_of_the_simulator(self):
+        """The cells that the central grid of a run of seed 1 ended sure of, of 40 × 40 of 5 m."""
+        places = [world.drawn_place(1, number, 40, 40, 5.0, np.zeros(2)) for number in range(5)]
+        cells = sorted((int(x // 5.0), int(y // 5.0)) for x, y in places)
+        self.assertEqual(cells, [(1, 12), (4, 26), (21, 32), (28, 5), (35, 21)])
+
     def test_what_a_study_sets_is_laid_over_the_scenario(self):
         tree = {"world": {"targets": [{"name": "a"}, {"name": "b"}]}}
         world.lay(tree, "world.targets[1].position_m", [1.0, 2.0])
@@ -219,8 +225,8 @@ class Levels(WithGrids):
 
     def test_who_hears_nobody_is_run_once_for_all_levels(self):
         levels = self.levels("bytes_sent", skip=(("none", 20),))
-        np.testing.assert_allclose(levels.curve(levels.metrics[0], None, "none")[0], [0.0, 0.0])
-        np.testing.assert_allclose(levels.curve(levels.metrics[0], None, "naive")[0], [300.0, 300.0])
+        np.testing.assert_allclose(levels.curve(levels.metrics[0], None, "none")[0], [0.0, 0.0])  # kB
+        np.testing.assert_allclose(levels.curve(levels.metrics[0], None, "naive")[0], [0.3, 0.3])
 
     def test_times_are_medians_that_count_who_never_gets_there(self):
         levels = self.levels("alarms_found_s")  # 4 and 6, 8 and never, never twice
@@ -239,7 +245,7 @@ class Levels(WithGrids):
         self.make_grids(talks=(5, 20))
         options = ("--over", "talk", "--metrics", "cells_false_share;bytes_sent;alarms_found_s", "--threshold", "0.5")
         said = self.said("grid_levels.py", *options)
-        for text in ("naive", "central grid", "bytes a", "all targets", "never", "medians", "3 paired repetitions"):
+        for text in ("naive", "central grid", "kB a", "all targets", "never", "medians", "3 paired repetitions"):
             self.assertIn(text, said)
 
     def test_mistakes_are_named(self):

@@ -149,6 +149,7 @@ METRICS = {
     "kl_to_central_nats": ("divergence from the central grid [nats]", "from the central\ngrid [nats]"),
     "entropy_nats": ("entropy [nats]", "entropy\n[nats]"),
     "disagreement_probability": ("largest difference of two vehicles", "largest difference\nof two vehicles"),
+    "multiplicity_mean": ("how often the average look is counted", "how often a\nlook is counted"),
     "alarms_detected_share": ("share of targets with an alarm", "targets with\nan alarm"),
     "alarms_false": ("false alarms", "false alarms"),
     "alarm_error_m": ("error of alarms [m]", "error of\nalarms [m]"),

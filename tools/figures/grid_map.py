@@ -163,7 +163,8 @@ def draw(runs, by, layers, agent, threshold, colors, entries):
     rows = math.ceil(len(runs) * len(layers) / columns)
     high = wide * aspect.rows / aspect.columns
     width = max(wide * columns + 0.35 * (columns - 1) + 0.75 + (0.1 if len(layers) > 1 else bar), 6.6)
-    fit = min(max(2, int((width - 0.8) / 1.3)), len(entries))
+    whole = sum(0.56 + 0.07 * len(entry.get_label()) for entry in entries) < width - 0.7
+    fit = len(entries) if whole else max(2, int((width - 0.8) / 1.5))
     below = 1.03 + 0.2 * math.ceil(len(entries) / fit) + (0.62 if len(layers) > 1 else 0.0)
     height = (high + 0.42) * rows + 0.1 + below
     figure = style.new_figure(width, height)

@@ -66,7 +66,7 @@ def value_axis(axes, values, logarithmic):
     if logarithmic:
         positive = values[values > 0.0]
         high = positive.max()
-        style.log_axis(axes, 0.7 * max(positive.min(), 1e-6 * high), 1.6 * high)
+        style.log_axis(axes, 0.7 * max(positive.min(), 1e-6 * min(high, 1.0)), 1.6 * high)
         return
     low, high = min(0.0, values.min()), max(0.0, values.max())
     room = 0.06 * (high - low)

@@ -7,8 +7,8 @@
 namespace hearsay {
 namespace {
 
-/// Where agent and target stand. Of what moves, which is looked up when it is looked at: any place
-/// with a line of sight.
+/// Where agent and target stand. Of what moves, or is drawn anew in each run, and so is looked up
+/// when it is looked at: any place with a line of sight.
 struct Site {
   std::array<double, 2> sensor_m, target_m;
 };
@@ -17,7 +17,9 @@ Site site_of(const AgentSpec& spec, const TargetSpec& target,
              const std::optional<std::array<double, 2>>& place) {
   Site site{place.value_or(std::array{0.0, 0.0}), {}};
   site.target_m = {site.sensor_m[0] + 1.0, site.sensor_m[1]};
-  if (!target.motion) site.target_m = {target.position_m->at(0), target.position_m->at(1)};
+  if (!target.motion && target.position_m) {
+    site.target_m = {target.position_m->at(0), target.position_m->at(1)};
+  }
   if (spec.motion) site.sensor_m = {site.target_m[0] - 1.0, site.target_m[1]};
   return site;
 }

@@ -1,6 +1,8 @@
 #include "agents/grids/grid_witness.hpp"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -13,12 +15,11 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-/// A threshold as the subject of its rows: "0.8".
+/// A threshold as the subject of its rows: "0.8"; the shortest text that no other number has.
 std::string name_of(double threshold) {
-  std::string text = std::to_string(threshold);
-  while (text.back() == '0') text.pop_back();
-  if (text.back() == '.') text.pop_back();
-  return text;
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), threshold).ptr;
+  return {text.data(), end};
 }
 
 std::vector<unsigned char> truth_of(const grid::Area& area, std::span<const grid::Point> targets) {

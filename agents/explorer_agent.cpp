@@ -6,12 +6,6 @@
 #include "sim/math/functions.hpp"
 
 namespace hearsay {
-namespace {
-
-/// Parts of one message have channel draws of their own; those of different ticks lie apart.
-constexpr std::uint64_t parts_a_tick = 1ULL << 20;
-
-}  // namespace
 
 ExplorerAgent::ExplorerAgent(Context& context, GridWitness& witness, const Options& options)
     : Agent(context),
@@ -106,10 +100,12 @@ void ExplorerAgent::say(AgentId receiver, std::uint64_t talk) {
     packet.bytes = packets[part];
     packet.receiver = receiver;
     packet.rider = estimator_.rider();
-    packet.tick = talk * parts_a_tick + part;
-    // News of the same part of the area takes the place of what still waits.
-    packet.subject =
-        (static_cast<std::uint64_t>(part) << 32) | static_cast<std::uint32_t>(context().id());
+    // Each packet has channel draws of its own.
+    packet.tick = talk * packets_a_talk_max + part;
+    // News of the same part of the area takes the place of what still waits. What changed is told
+    // once, and is of other cells each time.
+    const bool anew = options_.estimator.form == grid::Form::changed;
+    packet.subject = anew ? *packet.tick : part;
     if (!context().send(packet)) continue;
     estimator_.sent(receiver, packets[part], listeners_);
   }

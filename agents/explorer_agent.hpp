@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -32,6 +33,11 @@ class ExplorerAgent final : public Agent {
     double speed_m_per_s = 1.0;                       ///< of one that is steered, > 0
     std::optional<PeriodicTalk> talk;                 ///< nothing: never talks
   };
+  /// Packets are numbered by talk and part: a message must not take more than these, nor a run have
+  /// more talks.
+  static constexpr std::uint64_t packets_a_talk_max = std::uint64_t{1} << 20;
+  static constexpr std::uint64_t talks_max = std::uint64_t{1} << 28;
+
   ExplorerAgent(Context& context, GridWitness& witness, const Options& options);
 
   void start() override;

@@ -18,7 +18,6 @@ GridEstimator::GridEstimator(const grid::Area& area, const Options& options,
               grid::blocks_that_fit(grid::Form::whole, layers, options_.packet_bytes) > 0,
           "GridEstimator: no cell fits into a packet");
   require(options_.whole_every >= 0, "GridEstimator: whole_every must not be negative");
-  sent_.assign(belief_.evidence().size(), 0.0F);
 }
 
 void GridEstimator::looked(std::span<const grid::CellLook> looks,

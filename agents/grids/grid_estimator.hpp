@@ -96,7 +96,7 @@ class GridEstimator {
   Options options_;
   GridBelief belief_;
   std::vector<Other> others_;  // by id
-  std::vector<float> sent_;    // as it was told to all
+  std::vector<float> sent_;    // as it was told to all; empty: nothing yet
   std::vector<float> less_;    // evidence less what one neighbour said
   grid::Encoder encoder_;
   RiderPool<GridRider>* riders_;

@@ -67,8 +67,8 @@ void describe(V& v, ExplorationSpec& s) {
           "\"constant-speed\": how many turns it chooses from, odd; default 5");
   v.field("horizon_cells", s.horizon_cells, between(1, grid::Area::side_max),
           "\"gain\": how far ahead a move is judged; default 1");
-  v.field("gain_weight", s.gain_weight, at_least(0.0), "\"gain\": of a nat; default 1");
-  v.field("cost_weight", s.cost_weight, at_least(0.0),
+  v.field("gain_weight", s.gain_weight, between(0.0, 1e9), "\"gain\": of a nat; default 1");
+  v.field("cost_weight", s.cost_weight, between(0.0, 1e9),
           "\"gain\": of a cell of way, or half a turn; default 0");
 }
 

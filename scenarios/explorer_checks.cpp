@@ -13,6 +13,8 @@ namespace {
 
 constexpr std::size_t thresholds_max = 100;
 constexpr double recorded_cells_max = 1e6;
+constexpr double named_cells_max = 60'000;  // a record has 65,535 names in all
+constexpr double all_cells_max = 1e9;
 
 bool is_camera(const SensorSpec& sensor) { return sensor.kind == "segmented-camera"; }
 bool is_for_grids(const SensorSpec& sensor) {
@@ -50,6 +52,7 @@ class ExplorerChecker {
   void check_explorer(const AgentSpec& agent, const KeyPath& path);
   void check_talk(const TalkSpec& talk, const KeyPath& path) const;
   void check_grid(const GridSpec& grid, const KeyPath& path) const;
+  void check_packets(const AgentSpec& agent, const KeyPath& path) const;
   void check_like_first(const GridSpec& grid, const KeyPath& path);
   void check_sensor(const AgentSpec& agent, const KeyPath& path) const;
   void check_detector(const SensorSpec& sensor, const KeyPath& path) const;
@@ -82,11 +85,16 @@ void ExplorerChecker::check_world() const {
   if (!s_.world.area) fail(area, "missing; agents of kind \"explorer\" need cells to explore");
   if (s_.world.log) fail(area, "not with [world.log]");
   const AreaSpec& spec = *s_.world.area;
-  const double far_m = 1e9;
+  const double far_m = 1e8;  // a vehicle that cannot turn well leaves it by 2000 cells
   if (spec.cell_m * std::max(spec.columns, spec.rows) > far_m ||
       std::abs(spec.origin_m.at(0)) > far_m || std::abs(spec.origin_m.at(1)) > far_m) {
-    fail(area, "must lie within a million kilometres of the origin");
+    fail(area, "must lie within 100000 km of the origin");
   }
+  double all_cells = 0.0;
+  for (const AgentSpec& agent : s_.agents) {
+    if (agent.kind == "explorer") all_cells += 1.0 * spec.columns * spec.rows * agent.count;
+  }
+  if (all_cells > all_cells_max) fail(area, "has more than 1e9 cells, for all explorers together");
   for (std::size_t i = 0; i < s_.world.targets.size(); ++i) {
     const TargetSpec& target = s_.world.targets[i];
     const KeyPath path = targets[i];
@@ -116,6 +124,9 @@ void ExplorerChecker::check_record() const {
     fail(alarms["thresholds"], "must rise");
   }
   const double cells = static_cast<double>(s_.world.area->columns) * s_.world.area->rows;
+  if (spec.grids == "on" && cells > named_cells_max) {
+    fail(record["grids"], "more than 60000 cells of an area are not recorded");
+  }
   if (spec.grids == "on" && cells * s_.agent_count() > recorded_cells_max) {
     fail(record["grids"], "more than a million cells of all agents together are not recorded");
   }
@@ -163,6 +174,7 @@ void ExplorerChecker::check_explorer(const AgentSpec& agent, const KeyPath& path
   }
   check_talk(agent.talk, path["talk"]);
   check_grid(agent.grid, path["grid"]);
+  check_packets(agent, path["grid"]);
   check_like_first(agent.grid, path["grid"]);
   check_sensor(agent, path);
   check_way(agent, path);
@@ -172,6 +184,10 @@ void ExplorerChecker::check_talk(const TalkSpec& talk, const KeyPath& path) cons
   const std::string kind = "kind \"explorer\" knows ";
   if (talk.policy != "periodic" && talk.policy != "never") {
     fail(path["policy"], kind + "\"periodic\" and \"never\" alone; found \"" + talk.policy + "\"");
+  }
+  const auto talks_max = static_cast<double>(ExplorerAgent::talks_max);
+  if (talk.policy == "periodic" && *s_.duration_s / talk.period_s >= talks_max) {
+    fail(path["period_s"], "more than 2^28 talks in a run");
   }
   if (talk.content != "belief") {
     fail(path["content"], "kind \"explorer\" has agents.grid.message instead");
@@ -214,6 +230,30 @@ void ExplorerChecker::check_grid(const GridSpec& grid, const KeyPath& path) cons
   }
   if (grid.whole_every && grid.message != "changed") {
     fail(path["whole_every"], "only for message = \"changed\"; found \"" + grid.message + "\"");
+  }
+}
+
+void ExplorerChecker::check_packets(const AgentSpec& agent, const KeyPath& path) const {
+  const GridSpec& grid = agent.grid;
+  if (grid.fusion == "none" || agent.talk.policy == "never") return;
+  const grid::Form form = grid.message == "runs"      ? grid::Form::runs
+                          : grid.message == "changed" ? grid::Form::changed
+                                                      : grid::Form::whole;
+  const std::size_t layers =
+      grid.belief == "beta" ? grid::BetaGrid::layers : grid::BernoulliGrid::layers;
+  const std::size_t blocks =
+      grid::blocks_that_fit(form, layers, static_cast<std::size_t>(grid.packet_bytes_max));
+  const auto cells = static_cast<std::uint64_t>(area_of(s_.world).cells());
+  if (cells > blocks * ExplorerAgent::packets_a_talk_max) {
+    fail(path["packet_bytes_max"], "all cells would take more than 2^20 packets");
+  }
+  // The last cells would never be told; the packets of other forms are mostly fewer.
+  const std::uint64_t packets = (cells + blocks - 1) / blocks;
+  const auto queue = static_cast<std::uint64_t>(s_.radio.queue_packets_max);
+  if (form == grid::Form::whole && packets > queue) {
+    fail(path["packet_bytes_max"], "all cells take " + std::to_string(packets) +
+                                       " packets, but radio.queue_packets_max is " +
+                                       std::to_string(queue));
   }
 }
 
@@ -342,6 +382,11 @@ void ExplorerChecker::check_exploration(const ExplorationSpec& exploration,
   only(exploration.gain_weight.has_value(), "gain_weight", gains, choice);
   only(exploration.cost_weight.has_value(), "cost_weight", gains, choice);
   if (exploration.headings.value_or(5) % 2 == 0) fail(path["headings"], "must be odd");
+  const double cell_s = s_.world.area->cell_m / exploration.speed_m_per_s;
+  if (!(cell_s >= 1e-9 && cell_s <= 1e9)) {
+    fail(path["speed_m_per_s"],
+         "a cell (" + to_toml(s_.world.area->cell_m) + " m) must take 1e-9 s to 1e9 s");
+  }
 }
 
 }  // namespace

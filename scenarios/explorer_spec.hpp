@@ -44,8 +44,8 @@ struct ExplorationSpec {
   std::optional<double> turn_max_rad;  ///< "constant-speed": > 0, below π; none: π/4
   std::optional<int> headings;         ///< "constant-speed": odd, 3 … 63; none: 5
   std::optional<int> horizon_cells;    ///< "gain": 1 … 4096; none: 1
-  std::optional<double> gain_weight;   ///< "gain": ≥ 0; none: 1
-  std::optional<double> cost_weight;   ///< "gain": ≥ 0; none: 0
+  std::optional<double> gain_weight;   ///< "gain": 0 … 1e9; none: 1
+  std::optional<double> cost_weight;   ///< "gain": 0 … 1e9; none: 0
   bool operator==(const ExplorationSpec&) const = default;
 };
 

@@ -1,0 +1,86 @@
+// Scenarios of explorers, their errors and what their runs leave.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "scenarios/run.hpp"
+#include "tests/scenarios/temp_files.hpp"
+
+namespace hearsay {
+
+class ExplorerBed : public InTempDirectory {
+ protected:
+  /// All that a record feeds to its digest.
+  struct DigestedBytes : DigestSink {
+    void update(std::span<const std::byte> bytes) override {
+      for (const std::byte byte : bytes) all += static_cast<char>(byte);
+    }
+    std::string all;
+  };
+  /// What a run left, by agent and name; series by time in seconds and subject.
+  struct Values {
+    std::map<std::pair<AgentId, std::string>, double> scalars;
+    std::map<std::pair<AgentId, std::string>, std::map<std::pair<double, std::string>, double>>
+        series;
+    std::string digested;
+
+    double scalar(AgentId agent, const std::string& name) const {
+      return scalars.at({agent, name});
+    }
+    /// The last value of a subject, "" for the whole.
+    double last(AgentId agent, const std::string& name, const std::string& subject = "") const {
+      double value = -1.0;
+      for (const auto& [at, v] : series.at({agent, name})) {
+        if (at.second == subject) value = v;
+      }
+      return value;
+    }
+  };
+
+  std::shared_ptr<const PreparedScenario> prepared(const std::string& text) {
+    write("s.toml", text);
+    return prepare(load_scenario("s.toml", {}, known_names(catalog_)), catalog_, logs_);
+  }
+  std::string error(const std::string& text) {
+    return error_of([&] { prepared(text); });
+  }
+  /// As the run ended, "" if well.
+  std::string end_of(const std::string& text) {
+    hearsay::Run run(prepared(text), catalog_, {.seed = 3});
+    return run.run().message;
+  }
+  Values run(const std::string& text, std::uint64_t seed = 3) {
+    DigestedBytes digest;
+    hearsay::Run run(prepared(text), catalog_, {.seed = seed, .digest = &digest});
+    const RunEnd end = run.run();
+    EXPECT_TRUE(end.ok()) << end.message;
+    Values values;
+    const Record& record = run.record();
+    for (const ScalarRow& row : record.scalars()) {
+      values.scalars[{row.agent, record.text(row.name)}] = row.value;
+    }
+    for (const SeriesRow& row : record.series()) {
+      values.series[{row.agent, record.text(row.name)}]
+                   [{row.time.seconds(), record.text(row.subject)}] = row.value;
+    }
+    values.digested = digest.all;
+    return values;
+  }
+
+  /// `text` with each `from` replaced.
+  static std::string with(std::string text, const std::string& from, const std::string& to) {
+    EXPECT_NE(text.find(from), std::string::npos) << from;
+    for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
+      text.replace(at, from.size(), to);
+    }
+    return text;
+  }
+
+  Catalog catalog_;
+  LogCache logs_;
+};
+
+}  // namespace hearsay

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Whole runs: how fast the rumour study is swept, a fleet that follows moving targets, how CPU time grows
+"""Whole runs: how fast the rumour study is swept, fleets that follow moving targets and survey an area, how CPU
+time grows
 with agents and simulated time, and memory with simulated time.
 
 Usage: scaling.py HEARSAY [--hour]     writes Markdown; --hour adds an hour of 10,000 agents (minutes)
@@ -21,6 +22,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 SCENARIO = os.path.join(HERE, "scale.toml")
 FLEET = os.path.join(HERE, "fleet.toml")
 FLEET_S = 600.0
+SURVEY = os.path.join(HERE, "survey.toml")
 STUDY = os.path.join(HERE, "../../scenarios/rumour/rumour.study.toml")
 RUNS = 21600  # of the study
 
@@ -93,6 +95,18 @@ def fleets(hearsay, duration_s):
         print(f"| {topology} | {cpu:.1f} | {duration_s / cpu:.1f} | {1e6 * cpu / beliefs:.2f} | {peak:.1f} |")
 
 
+def survey(hearsay, duration_s, goal):
+    print("\n## A fleet that surveys an area\n")
+    print(f"`tools/bench/survey.toml`: twenty vehicles with cameras over a grid of 200 × 200 cells, each of which looks "
+          f"once a second, goes where a look tells most and tells all others every ten what changed; {duration_s:g} s, "
+          "ledger off. One run, start-up included.\n")
+    print("| CPU time [s] | times real time | goal | | peak memory [MB] |")
+    print("|---|---|---|---|---|")
+    cpu, peak = measured(hearsay, SURVEY, [f"duration_s={float(duration_s)!r}"])
+    times = duration_s / cpu
+    print(f"| {cpu:.1f} | {times:.1f} | ≥ {goal} | {'met' if times >= goal else '**missed**'} | {peak:.1f} |")
+
+
 def section(title, unit, sizes, times):
     print(f"\n{title}: exponent {exponent(sizes, times):.3f} "
           f"(least squares of log time on log {unit}).\n")
@@ -105,6 +119,7 @@ def main():
     hearsay = sys.argv[1]
     sweeps(hearsay)
     fleets(hearsay, FLEET_S)
+    survey(hearsay, FLEET_S, 100)
     start_s = cpu_s(hearsay, 2, 0.001)  # what a process costs that does nothing; taken off below
     print("\n## How cost grows\n")
     print("`tools/bench/scale.toml`: agents 20 m apart on a ring, six in range of each, that look at "

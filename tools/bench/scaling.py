@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 """Whole runs: how fast the rumour study is swept, fleets that follow moving targets and survey an area, how CPU
-time grows
-with agents and simulated time, and memory with simulated time.
+time grows with agents and simulated time, and memory with simulated time.
 
 Usage: scaling.py HEARSAY [--hour]     writes Markdown; --hour adds an hour of 10,000 agents (minutes)
 """

@@ -102,9 +102,10 @@ void GridWitness::sample() {
   }
 }
 
-void GridWitness::keep(AgentId agent, NameId subject, const char* name, double value) {
+void GridWitness::keep(AgentId agent, NameId subject, const char* name, double value,
+                       Origin origin) {
   Record& record = simulation_.record();
-  record.series(simulation_.now(), agent, subject, record.name(name), value);
+  record.series(simulation_.now(), agent, subject, record.name(name), value, origin);
 }
 
 void GridWitness::sample(AgentId agent, const GridBelief& belief) {
@@ -164,7 +165,7 @@ void GridWitness::sample_ledger(const Watched& watched) {
   const NameId whole = simulation_.record().name("");
   const bool any = counted.looks > 0;
   const auto leave = [&](bool wanted, const char* name, double value) {
-    if (wanted) keep(watched.agent, whole, name, any ? value : none);
+    if (wanted) keep(watched.agent, whole, name, any ? value : none, Origin::ledger);
   };
   leave(wanted_.multiplicity_mean, "multiplicity_mean", counted.mean);
   leave(wanted_.multiplicity_max, "multiplicity_max", counted.max);

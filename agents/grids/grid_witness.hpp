@@ -72,7 +72,8 @@ class GridWitness {
   void sample_alarms(AgentId agent, const GridBelief& belief);
   void sample_ledger(const Watched& watched);
   void sample_disagreement();
-  void keep(AgentId agent, NameId subject, const char* name, double value);
+  void keep(AgentId agent, NameId subject, const char* name, double value,
+            Origin origin = Origin::run);
   /// True if it has an alarm at every target.
   bool finds_all(const GridBelief& belief);
   void leave_grid(AgentId agent, const GridBelief& belief);

@@ -41,6 +41,7 @@ class ExplorerChecker {
       } else {
         check_other(agent, path);
       }
+      number_ += static_cast<std::size_t>(agent.count);
     }
   }
 
@@ -59,8 +60,6 @@ class ExplorerChecker {
   void check_image(const SensorSpec& sensor, const KeyPath& path) const;
   void check_way(const AgentSpec& agent, const KeyPath& path) const;
   void check_exploration(const ExplorationSpec& exploration, const KeyPath& path) const;
-  /// Whose entry an agent is of.
-  const AgentSpec* entry_of(std::size_t agent) const;
   [[noreturn]] void fail(const KeyPath& path, const std::string& why) const {
     file_.fail(path, why);
   }
@@ -69,6 +68,7 @@ class ExplorerChecker {
   const Scenario& s_;
   bool explorers_;
   std::vector<std::optional<std::array<double, 2>>> places_;
+  std::size_t number_ = 0;  // of the first agent of the entry at hand
   KeyPath top_;
   KeyPath agents_ = top_["agents"];
   const GridSpec* first_ = nullptr;
@@ -352,19 +352,12 @@ void ExplorerChecker::check_way(const AgentSpec& agent, const KeyPath& path) con
   }
   check_exploration(*agent.exploration, exploration);
   const KeyPath place = path[agent.circle ? "circle" : "position_m"];
-  for (std::size_t i = 0; i < places_.size(); ++i) {
-    if (entry_of(i) != &agent || !places_[i]) continue;
-    const auto& [x, y] = *places_[i];
-    if (!area_of(s_.world).at({x, y})) fail(place, "an explorer begins inside world.area");
+  for (std::size_t i = 0; i < static_cast<std::size_t>(agent.count); ++i) {
+    const auto& at = places_[number_ + i];
+    if (at && !area_of(s_.world).at({(*at)[0], (*at)[1]})) {
+      fail(place, "an explorer begins inside world.area");
+    }
   }
-}
-
-const AgentSpec* ExplorerChecker::entry_of(std::size_t agent) const {
-  for (const AgentSpec& entry : s_.agents) {
-    if (agent < static_cast<std::size_t>(entry.count)) return &entry;
-    agent -= static_cast<std::size_t>(entry.count);
-  }
-  return nullptr;
 }
 
 void ExplorerChecker::check_exploration(const ExplorationSpec& exploration,

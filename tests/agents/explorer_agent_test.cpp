@@ -67,7 +67,6 @@ class Bed {
     movement_ = std::make_unique<Movement>(simulation, places_, paths_);
     Reach reach{.topology = Topology::full(count_ + 1)};
     reach.places = &places_;
-    radio = std::make_unique<Radio>(simulation, std::move(reach), radio_options);
     witness_ = std::make_unique<GridWitness>(
         simulation,
         GridWitness::Options{
@@ -77,9 +76,11 @@ class Bed {
             .thresholds = {0.8},
             .gate_m = 12.0,
             .period = period,
-            .series = {"disagreement_probability", "kl_to_central_nats", "cells_hearsay"},
+            .series = {"disagreement_probability", "kl_to_central_nats", "cells_hearsay",
+                       "multiplicity_mean", "multiplicity_max", "multiplicity_share"},
             .grids = true,
             .place_of = [this](AgentId id) { return radio->position(id); }});
+    radio = std::make_unique<Radio>(simulation, std::move(reach), radio_options);
     for (AgentId id = 0; id < count_; ++id) {
       const One& one = all[static_cast<std::size_t>(id)];
       contexts_.push_back(std::make_unique<Context>(
@@ -141,13 +142,13 @@ class Bed {
   Straight paths_;
   Places places_;
   std::unique_ptr<Movement> movement_;
+  std::unique_ptr<GridWitness> witness_;  // owns the riders of packets in flight
 
  public:
   std::unique_ptr<Radio> radio;
   Listener listener;
 
  private:
-  std::unique_ptr<GridWitness> witness_;
   std::vector<std::unique_ptr<Context>> contexts_;
 
  public:
@@ -296,6 +297,10 @@ TEST(ExplorerAgent, TellsWhatItBelievesAndTakesInWhatItHears) {
   EXPECT_EQ(bed.scalar(1, "measurements"), 0.0);
   EXPECT_EQ(bed.scalar(0, "fusions"), 4.0);  // once 1 knows something
   EXPECT_GT(*bed.belief(1).probability(5), 0.99);
+  // 0 counts what it hears again but once; 1 has not heard of the looks since 8 s.
+  EXPECT_EQ(bed.series(0, "multiplicity_max").at({10.0, ""}), 1.0);
+  EXPECT_EQ(bed.series(1, "multiplicity_share").at({10.0, ""}), 0.0);
+  EXPECT_EQ(bed.agents[1]->estimator().ledger().weights(5).size(), 9U);
   const std::vector<std::byte> noise(10);
   bed.agents[1]->on_packet({.sender = 0,
                             .receiver = 1,

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -17,6 +18,7 @@ namespace hearsay {
 struct GridLetter {
   AgentId from = 0, to = 0;
   std::vector<std::byte> bytes;
+  RiderPtr rider;
 };
 
 inline grid::CellLook look_at(int cell, double ratio) { return {cell, ratio, 0.0, 0.0}; }
@@ -28,17 +30,26 @@ class GridFleet {
   using Edges = std::vector<std::pair<AgentId, AgentId>>;
 
   GridFleet(int agents, Edges edges, const grid::Area& area, const GridEstimator::Options& options)
-      : options_(options), edges_(std::move(edges)), central_(area, options.belief) {
-    for (int i = 0; i < agents; ++i) agents_.emplace_back(area, options);
+      : options_(options),
+        edges_(std::move(edges)),
+        central_(area, options.belief),
+        book_(central_.shape()) {
+    for (int i = 0; i < agents; ++i) agents_.emplace_back(area, options, &riders_);
   }
 
   GridEstimator& agent(AgentId id) { return agents_[static_cast<std::size_t>(id)]; }
   /// What one would believe who was told of every look at once.
   const GridBelief& central() const { return central_; }
+  const grid::LookBook& book() const { return book_; }
+  /// How far what the ledger of `id` says it believes is from what it does believe.
+  double ledger_gap(AgentId id) {
+    return grid::largest_gap(agent(id).ledger(), book_, agent(id).belief().evidence());
+  }
   AgentId agents() const { return static_cast<AgentId>(agents_.size()); }
 
   void look(AgentId id, const grid::CellLook& look) {
-    agent(id).looked({&look, 1});
+    const std::uint32_t index = book_.add(look);
+    agent(id).looked({&look, 1}, {&index, 1});
     central_.add({&look, 1});
   }
 
@@ -60,7 +71,9 @@ class GridFleet {
       for (const std::vector<std::byte>& packet : packets) {
         EXPECT_LE(packet.size(), options_.packet_bytes);
         agent(from).sent(receiver, packet, hearers);
-        for (const AgentId hearer : to) letters.push_back({from, hearer, packet});
+        for (const AgentId hearer : to) {
+          letters.push_back({from, hearer, packet, agent(from).rider()});
+        }
       }
     };
     if (!agent(from).addresses()) {
@@ -71,7 +84,9 @@ class GridFleet {
     return letters;
   }
 
-  void deliver(const GridLetter& letter) { agent(letter.to).heard(letter.from, letter.bytes); }
+  void deliver(const GridLetter& letter) {
+    agent(letter.to).heard(letter.from, letter.bytes, letter.rider.get());
+  }
   void deliver(const std::vector<GridLetter>& letters) {
     for (const GridLetter& letter : letters) deliver(letter);
   }
@@ -99,6 +114,8 @@ class GridFleet {
   GridEstimator::Options options_;
   Edges edges_;
   GridBelief central_;
+  grid::LookBook book_;
+  RiderPool<GridRider> riders_;
   std::vector<GridEstimator> agents_;
 };
 

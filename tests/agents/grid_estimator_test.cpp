@@ -142,6 +142,10 @@ TEST(GridEstimator, ChannelRobustOnATreeEndsAsOneGridWithEveryLook) {
           EXPECT_LT(fleet.off(id), 2e-4) << id << " of " << agents << ", form " << int(form);
           EXPECT_GT(fleet.agent(id).counts().refused, 5U);
           EXPECT_LT(fleet.central().divergence(fleet.agent(id).belief()).value(), 1e-6);
+          const auto counted = grid::multiplicity(fleet.agent(id).ledger(), fleet.book());
+          EXPECT_NEAR(counted.max, 1.0, 1e-4);
+          EXPECT_NEAR(counted.mean, 1.0, 1e-5);
+          EXPECT_EQ(counted.share_missing, 0.0);
         }
       }
     }
@@ -155,12 +159,46 @@ TEST(GridEstimator, ChannelRobustOnARingCountsTwice) {
   for (AgentId id = 0; id < 3; ++id) EXPECT_GE(evidence(fleet.agent(id), 3), 0.999) << id;
 }
 
+// Whatever is lost, doubled, overtaken or forgotten, and by whatever rule.
+TEST(GridEstimator, TheLedgerSaysWhatTheEvidenceIsMadeOf) {
+  for (const grid::RuleInfo& rule : grid::rules()) {
+    for (const bool of_counts : {false, true}) {
+      if (of_counts ? !rule.beta : !rule.bernoulli) continue;
+      const Form form = rule.rule == Rule::channel ? Form::changed : Form::runs;
+      auto options = of_counts ? beta(rule.rule, form) : bernoulli(rule.rule, form);
+      options.packet_bytes = 100;
+      options.omega = 0.3;
+      GridFleet fleet(3, ring, area, options);
+      Stream random(5, Purpose("ledger"), Entity::agent(0));
+      for (std::uint64_t talk = 0; talk < 16; ++talk) {
+        for (int look = 0; look < 6; ++look) {
+          fleet.look(static_cast<AgentId>(random.below(3)),
+                     {static_cast<int>(random.below(35)), random.normal(0.0, 0.02), 0.25, 0.5});
+        }
+        for (const GridLetter& letter : fleet.say(static_cast<AgentId>(random.below(3)), talk)) {
+          if (random.bernoulli(0.2)) continue;
+          fleet.deliver(letter);
+          if (random.bernoulli(0.3)) fleet.deliver(letter);
+        }
+        if (talk == 8) fleet.agent(1).forget();
+      }
+      for (AgentId id = 0; id < 3; ++id) {
+        EXPECT_LT(fleet.ledger_gap(id), 1e-4) << rule.name;
+        EXPECT_GT(grid::multiplicity(fleet.agent(id).ledger(), fleet.book()).looks, 5U);
+      }
+    }
+  }
+}
+
 TEST(GridEstimator, NaiveCountsAgainWhatItHearsAgain) {
   GridFleet fleet(2, {{0, 1}}, area, bernoulli(Rule::naive));
   fleet.look(0, look_at(3, 0.5));
   fleet.deliver(fleet.say(0, 0));
   fleet.deliver(fleet.say(0, 1));
   EXPECT_EQ(evidence(fleet.agent(1), 3), 1.0);
+  const auto counted = grid::multiplicity(fleet.agent(1).ledger(), fleet.book());
+  EXPECT_EQ(counted.max, 2.0);
+  EXPECT_EQ(counted.share_above_one, 1.0);
 }
 
 TEST(GridEstimator, ChannelIsExactWhereTwoTakeTurns) {
@@ -195,12 +233,12 @@ TEST(GridEstimator, ChannelLosesLooksWhereBeliefsCrossOrGetLost) {
 }
 
 TEST(GridEstimator, RefusesWhatIsMalformedOutdatedOrHeardBefore) {
-  GridEstimator a(area, bernoulli(Rule::naive)), b(area, bernoulli(Rule::naive));
-  a.looked(std::vector{look_at(8, 1.0)});
+  GridEstimator a(area, bernoulli(Rule::naive), nullptr), b(area, bernoulli(Rule::naive), nullptr);
+  a.looked(std::vector{look_at(8, 1.0)}, {});
   const auto first = said(a).front(), second = said(a).front(), third = said(a).front();
   std::uint64_t refused = 0;
   const auto refuses = [&](std::span<const std::byte> bytes) {
-    b.heard(0, bytes);
+    b.heard(0, bytes, nullptr);
     EXPECT_EQ(b.counts().refused, ++refused);
   };
   refuses({});
@@ -209,24 +247,24 @@ TEST(GridEstimator, RefusesWhatIsMalformedOutdatedOrHeardBefore) {
   refuses(cut);
   more.push_back(std::byte{0});
   refuses(more);
-  GridEstimator other(grid::Area({.columns = 6, .rows = 6}), bernoulli(Rule::naive));
-  other.looked(std::vector{look_at(8, 1.0)});
+  GridEstimator other(grid::Area({.columns = 6, .rows = 6}), bernoulli(Rule::naive), nullptr);
+  other.looked(std::vector{look_at(8, 1.0)}, {});
   refuses(said(other).front());  // about another area
-  GridEstimator counts(area, beta(Rule::naive));
-  counts.looked(std::vector{counted_at(8, 1.0, 0.0)});
+  GridEstimator counts(area, beta(Rule::naive), nullptr);
+  counts.looked(std::vector{counted_at(8, 1.0, 0.0)}, {});
   refuses(said(counts).front());  // of another kind
   EXPECT_EQ(b.counts().fusions, 0U);
-  b.heard(0, second);
+  b.heard(0, second, nullptr);
   refuses(second);  // twice
   refuses(first);   // overtaken
-  b.heard(0, third);
+  b.heard(0, third, nullptr);
   EXPECT_EQ(evidence(b, 8), 2.0);
   EXPECT_EQ(b.counts().fusions, 2U);
-  b.heard(5, first);  // of another sender nothing was heard yet
+  b.heard(5, first, nullptr);  // of another sender nothing was heard yet
   EXPECT_EQ(evidence(b, 8), 3.0);
 
-  GridEstimator deaf(area, bernoulli(Rule::none));
-  deaf.heard(0, first);
+  GridEstimator deaf(area, bernoulli(Rule::none), nullptr);
+  deaf.heard(0, first, nullptr);
   EXPECT_EQ(deaf.counts().refused, 1U);
   EXPECT_EQ(evidence(deaf, 8), 0.0);
   EXPECT_TRUE(said(deaf).empty());
@@ -235,29 +273,30 @@ TEST(GridEstimator, RefusesWhatIsMalformedOutdatedOrHeardBefore) {
 TEST(GridEstimator, PartsOfOneMessageMayComeInAnyOrderEachOnce) {
   auto options = bernoulli(Rule::naive);
   options.packet_bytes = 64;
-  GridEstimator a(area, options), b(area, options);
-  for (int cell = 0; cell < 35; ++cell) a.looked(std::vector{look_at(cell, 0.25 + cell)});
+  GridEstimator a(area, options, nullptr), b(area, options, nullptr);
+  for (int cell = 0; cell < 35; ++cell) a.looked(std::vector{look_at(cell, 0.25 + cell)}, {});
   const auto parts = said(a);
   ASSERT_GT(parts.size(), 3U);
   for (std::size_t i = parts.size(); i-- > 0;) {
-    b.heard(0, parts[i]);
-    b.heard(0, parts[i]);
+    b.heard(0, parts[i], nullptr);
+    b.heard(0, parts[i], nullptr);
   }
   EXPECT_EQ(b.counts().fusions, parts.size());
   EXPECT_EQ(b.counts().refused, parts.size());
   EXPECT_TRUE(std::ranges::equal(a.belief().evidence(), b.belief().evidence()));
   // A part of the message before, that comes late, is no news any more.
   const auto newer = said(a);
-  b.heard(0, newer.front());
-  b.heard(0, parts.back());
+  b.heard(0, newer.front(), nullptr);
+  b.heard(0, parts.back(), nullptr);
   EXPECT_EQ(b.counts().refused, parts.size() + 1);
 }
 
 TEST(GridEstimator, WhoLostItsMemoryCountsAnewAndIsHeardAgain) {
-  GridEstimator a(area, bernoulli(Rule::channel_robust)), b(area, bernoulli(Rule::channel_robust));
-  a.looked(std::vector{look_at(3, 1.0)});
+  GridEstimator a(area, bernoulli(Rule::channel_robust), nullptr),
+      b(area, bernoulli(Rule::channel_robust), nullptr);
+  a.looked(std::vector{look_at(3, 1.0)}, {});
   std::vector<std::byte> last;
-  for (std::uint64_t talk = 0; talk < 5; ++talk) b.heard(0, last = post(a, {1}, 1, talk));
+  for (std::uint64_t talk = 0; talk < 5; ++talk) b.heard(0, last = post(a, {1}, 1, talk), nullptr);
   EXPECT_EQ(evidence(b, 3), 1.0);
   const auto before = grid::Packet::parse(last, one_a_cell)->head();
   EXPECT_EQ(before.incarnation, 0U);
@@ -265,31 +304,31 @@ TEST(GridEstimator, WhoLostItsMemoryCountsAnewAndIsHeardAgain) {
   a.forget();
   EXPECT_EQ(evidence(a, 3), 0.0);
   EXPECT_TRUE(said(a, 1).empty());  // there is nothing to tell
-  a.looked(std::vector{look_at(4, 2.0)});
+  a.looked(std::vector{look_at(4, 2.0)}, {});
   const std::vector<std::byte> again = post(a, {1}, 1);
   const auto after = grid::Packet::parse(again, one_a_cell)->head();
   EXPECT_EQ(after.incarnation, 1U);
   EXPECT_EQ(after.count, 1U);
-  b.heard(0, again);
+  b.heard(0, again, nullptr);
   EXPECT_EQ(b.counts().refused, 0U);
   EXPECT_EQ(evidence(b, 4), 2.0);
   EXPECT_EQ(evidence(b, 3), 0.0);  // it stands by what it says now, and by that alone
-  b.heard(0, last);                // of its former life
+  b.heard(0, last, nullptr);       // of its former life
   EXPECT_EQ(b.counts().refused, 1U);
   // The other tells it of what it said itself no more than before.
-  b.looked(std::vector{look_at(5, 0.5)});
-  a.heard(1, post(b, {0}, 0));
+  b.looked(std::vector{look_at(5, 0.5)}, {});
+  a.heard(1, post(b, {0}, 0), nullptr);
   EXPECT_EQ(evidence(a, 4), 2.0);
   EXPECT_EQ(evidence(a, 5), 0.5);
 }
 
 TEST(GridEstimator, WhoLostItsMemoryHearsOldNewsAnew) {
-  GridEstimator a(area, bernoulli(Rule::naive)), b(area, bernoulli(Rule::naive));
-  a.looked(std::vector{look_at(3, 1.0)});
+  GridEstimator a(area, bernoulli(Rule::naive), nullptr), b(area, bernoulli(Rule::naive), nullptr);
+  a.looked(std::vector{look_at(3, 1.0)}, {});
   const auto packet = post(a, {1});
-  b.heard(0, packet);
+  b.heard(0, packet, nullptr);
   b.forget();
-  b.heard(0, packet);
+  b.heard(0, packet, nullptr);
   EXPECT_EQ(evidence(b, 3), 1.0);
   EXPECT_EQ(b.counts().refused, 0U);
   EXPECT_EQ(b.counts().fusions, 2U);  // counted through all its lives
@@ -298,17 +337,17 @@ TEST(GridEstimator, WhoLostItsMemoryHearsOldNewsAnew) {
 TEST(GridEstimator, ChangesAreToldOnceAndTheWholeNowAndThen) {
   auto options = bernoulli(Rule::maximum, Form::changed);
   options.whole_every = 4;
-  GridEstimator a(area, options);
+  GridEstimator a(area, options, nullptr);
   EXPECT_TRUE(said(a, no_agent, 0).empty());
-  a.looked(std::vector{look_at(3, 1.0), look_at(20, -1.0)});
+  a.looked(std::vector{look_at(3, 1.0), look_at(20, -1.0)}, {});
   EXPECT_EQ(cells_in(post(a, {1}, no_agent, 1)), (std::vector{3, 20}));
   EXPECT_TRUE(said(a, no_agent, 2).empty());  // nothing new
-  a.looked(std::vector{look_at(20, 0.5)});
+  a.looked(std::vector{look_at(20, 0.5)}, {});
   EXPECT_EQ(cells_in(said(a, no_agent, 2).front()), (std::vector{20}));  // the radio refused it
   EXPECT_EQ(cells_in(post(a, {1}, no_agent, 3)), (std::vector{20}));
   EXPECT_EQ(cells_in(post(a, {1}, no_agent, 4)).size(), 35U);
   EXPECT_TRUE(said(a, no_agent, 5).empty());
-  a.looked(std::vector{look_at(0, 1.0), look_at(0, -1.0)});
+  a.looked(std::vector{look_at(0, 1.0), look_at(0, -1.0)}, {});
   EXPECT_TRUE(said(a, no_agent, 5).empty());  // back to what it told
 }
 
@@ -343,9 +382,9 @@ TEST(GridEstimator, ChangesAreKeptForEachNeighbourWhereEachIsToldItsOwn) {
 
 TEST(GridEstimator, ATalkWithoutNewsIsNoPacket) {
   for (const Form form : {Form::whole, Form::changed, Form::runs}) {
-    GridEstimator a(area, bernoulli(Rule::naive, form));
+    GridEstimator a(area, bernoulli(Rule::naive, form), nullptr);
     EXPECT_TRUE(said(a).empty());
-    a.looked(std::vector{look_at(3, 0.0)});
+    a.looked(std::vector{look_at(3, 0.0)}, {});
     EXPECT_TRUE(said(a).empty());
     EXPECT_EQ(a.counts().looks, 1U);
   }
@@ -353,7 +392,7 @@ TEST(GridEstimator, ATalkWithoutNewsIsNoPacket) {
 
 TEST(GridEstimator, IsNotMadeOfWhatDoesNotFit) {
   const auto made = [](const GridEstimator::Options& options) {
-    return GridEstimator(area, options);
+    return GridEstimator(area, options, nullptr);
   };
   EXPECT_THROW(made(bernoulli(Rule::elementwise_maximum)), BrokenInvariant);
   EXPECT_THROW(made(beta(Rule::maximum)), BrokenInvariant);

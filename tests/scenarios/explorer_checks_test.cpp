@@ -361,8 +361,12 @@ TEST_F(ExplorerChecks, WhoIsSteeredExploresFromAPlaceInTheArea) {
             "s.toml:11: agents[0].position_m: an explorer begins inside world.area");
   EXPECT_EQ(changed("[2.5, 2.5]", "[2.5, -1e-9]"),
             "s.toml:11: agents[0].position_m: an explorer begins inside world.area");
-  EXPECT_EQ(changed("position_m = [2.5, 2.5]", "circle = { radius_m = 3 }"),
-            "s.toml:11: agents[0].circle: explorers that are steered have position_m");
+  EXPECT_EQ(changed("position_m = [2.5, 2.5]", "circle = { radius_m = 3 }"), "no error");
+  EXPECT_EQ(changed("position_m = [2.5, 2.5]", "circle = { radius_m = 3 }\ncount = 3"),
+            "s.toml:11: agents[0].circle: an explorer begins inside world.area");
+  EXPECT_EQ(
+      changed("position_m = [2.5, 2.5]", "circle = { radius_m = 3, center_m = [5, 5] }\ncount = 3"),
+      "no error");
 }
 
 TEST_F(ExplorerChecks, AnExplorationHasTheKeysOfItsKind) {

@@ -23,7 +23,7 @@ targets = [{ position_m = [5, 5] }]
 [radio]
 topology = "full"
 [record]
-series = ["cells_hearsay", "cells_detected_share"]
+series = ["cells_hearsay", "cells_detected_share", "multiplicity_max"]
 grids = "on"
 [[agents]]
 kind = "explorer"
@@ -63,7 +63,18 @@ TEST_F(ExplorerRun, OneOpinionHeardTwiceIsAnAlarmUnderNaiveAlone) {
       EXPECT_EQ(values.last(id, "cells_detected_share", "0.8"), p(id) > 0.8 ? 1.0 : 0.0);
     }
     EXPECT_EQ(values.scalar(2, "fusions"), rule == "none" ? 0.0 : 2.0);
+    if (rule == "none") continue;
+    EXPECT_EQ(values.last(2, "multiplicity_max"), third > 0.7001 ? 2.0 : 1.0) << rule;
   }
+}
+
+TEST_F(ExplorerRun, TheLedgerChangesNothing) {
+  const std::string on = with(hearsay_of_one, "RULE", "naive");
+  const std::string off = with(on, "[record]\n", "[record]\nledger = \"off\"\n");
+  const Values with_ledger = run(on), without = run(off);
+  EXPECT_TRUE(with_ledger.digested == without.digested);
+  EXPECT_TRUE(with_ledger.series.contains({2, "multiplicity_max"}));
+  EXPECT_FALSE(without.series.contains({2, "multiplicity_max"}));
 }
 
 /// Four who mow the lawn, each from a corner of its own, and look for 60 s.

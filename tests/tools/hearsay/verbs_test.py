@@ -110,15 +110,22 @@ class Verbs(Bed):
 
     def test_list_shows_what_there_is(self):
         rules = json.loads(self.good("list", "rules", "--json"))["rules"]
-        names = [rule["name"] for rule in rules]
+        gaussian = [rule for rule in rules if not rule["goes with"].startswith("explorer")]
+        names = [rule["name"] for rule in gaussian]
         self.assertEqual(names, ["none", "naive", "local-update", "channel", "channel-robust", "ci-det",
                                  "ci-trace", "ci-half", "ci-fixed", "ci-niehsen", "ci-franken-huepper",
                                  "most-certain", "inverse-ci", "ellipsoidal", "ci-batch", "split-ci",
                                  "consensus-information", "hybrid-consensus"])
+        for rule in gaussian:
+            self.assertIn("static-gaussian", rule["goes with"])
+        of_grids = {rule["name"]: rule["goes with"] for rule in rules if rule not in gaussian}
+        self.assertEqual(of_grids, {
+            **dict.fromkeys(["none", "naive", "channel", "channel-robust", "dictatorship"], "explorer: bernoulli, beta"),
+            **dict.fromkeys(["maximum", "strongest", "geometric-mean", "linear-pool"], "explorer: bernoulli"),
+            **dict.fromkeys(["elementwise-maximum", "averaged-parameters"], "explorer: beta")})
         for rule in rules:
             self.assertTrue(rule["sends"] and rule["assumes"] and rule["conservative"] and rule["source"])
-            self.assertIn("static-gaussian", rule["goes with"])
-            self.assertTrue(rule["cost"])
+            self.assertTrue(rule["cost"] and rule["ledger"])
         self.assertIn("rumour/rumour.study.toml", self.good("list", "scenarios"))
         radios = self.good("list", "radios")
         self.assertIn("radio.rate_bps: number, bit/s, > 0, default 1e+06: bits a second", radios)

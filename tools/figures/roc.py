@@ -2,7 +2,7 @@
 """Operating curves of certainty grids at the end of the runs: which share of the cells with a target is over a
 threshold (P_D), and which share of the empty ones (P_F); then P_F against the threshold. A curve a rule.
 
-    roc.py DATABASE OUTPUT [--by rule] [--rules A;B;…] [--study S]
+    roc.py DATABASE OUTPUT [--by rule] [--rules A;B;…] [--no-central] [--study S]
 
 For runs of explorers with the series cells_detected_share and cells_false_share and several
 record.alarms.thresholds. OUTPUT ends with .png, .svg or .pdf. Any other axis of the study is chosen by an
@@ -51,7 +51,8 @@ def ends_by_threshold(chosen, name):
 class Curves:
     """P_D and P_F with intervals, for each label and threshold."""
 
-    def __init__(self, chosen, by, labels):
+    def __init__(self, chosen, by, labels, with_central=True):
+        self._with_central = with_central
         self.chosen, self.by, self.labels = chosen, by, labels
         series = {name: ends_by_threshold(chosen, name) for name in (DETECTED, FALSE)}
         both = [t for t in series[DETECTED] if t in series[FALSE]]
@@ -67,8 +68,8 @@ class Curves:
         return np.array([[c.value[0], c.low[0], c.high[0]] for c in curves]).T
 
     def central(self, name):
-        """Means of the central grids over all labels, or None if they were not recorded."""
-        if not all((s.agents == data.CENTRAL).any() for s in self.series[name]):
+        """Means of the central grids over all labels, or None if they were not recorded or asked for."""
+        if not self._with_central or not all((s.agents == data.CENTRAL).any() for s in self.series[name]):
             return None
         cells = [self.chosen.cell(**{self.by: label}) for label in self.labels]
         sums = [[s.of(a, "central")[cells].sum() for s in self.series[name]] for a in ("total", "count")]
@@ -228,10 +229,11 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--by", default="rule", help="axis with a curve a label")
     parser.add_argument("--rules", "--labels", default="", dest="labels", help="labels of that axis, with ; between")
+    parser.add_argument("--no-central", action="store_true", help="not the central grid: where it is not one for all")
     arguments, chosen = data.parse(parser)
     chosen.require_axes(arguments.by)
     labels = panels.chosen_labels(chosen, arguments.by, arguments.labels)
-    curves = Curves(chosen, arguments.by, labels)
+    curves = Curves(chosen, arguments.by, labels, not arguments.no_central)
     values = [curves.of(FALSE, label)[0] for label in labels]
     central = curves.central(FALSE)
     axis = Axis(panels.finite(values + ([central] if central is not None else []), "P_F"))

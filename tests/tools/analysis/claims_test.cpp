@@ -229,6 +229,20 @@ TEST(Claims, RootMeanSquaresStaySoOverAgentsAndSubjects) {
   EXPECT_THAT(bed.judge(at_most("reach_gap", 1e6)).note, HasSubstr("subjects averaged"));
 }
 
+TEST(Claims, NamedSubjectsAreComparedEachForItself) {
+  Agents bed;
+  Expectation far = at_most("reach_gap", 30.0);
+  far.subjects = {"far"};
+  EXPECT_EQ(bed.judge(far).comparisons, 2u) << "two agents";
+  EXPECT_NEAR(bed.judge(far).worst.estimate, 7.0 * 4.0, 1e-12);
+  EXPECT_THAT(bed.judge(far).worst_where, HasSubstr("far"));
+  far.subjects = {"near", "far"};
+  EXPECT_EQ(bed.judge(far).comparisons, 4u);
+  EXPECT_NEAR(bed.judge(far).worst.estimate, 7.0 * 4.0, 1e-12);
+  far.subjects = {"fare"};
+  EXPECT_THROW(bed.judge(far), InputError);
+}
+
 TEST(Claims, OverDividesTheAggregates) {
   Lengths bed;
   Expectation expect = within("longer", 2.9, 3.1);

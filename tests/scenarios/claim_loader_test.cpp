@@ -110,7 +110,7 @@ TEST_F(ClaimLoader, SubjectsAreNamed) {
   EXPECT_THAT(expectation("metric = \"nees\", at_most = 1, subjects = [\"0.8\", \"0.9\"]").subjects,
               ElementsAre("0.8", "0.9"));
   EXPECT_EQ(error("metric = \"nees\", at_most = 1, subjects = []"),
-            "s.toml:7: claims[0].expect.subjects = []: must have at least one name");
+            "s.toml:10: claims[0].expect.subjects = []: must have at least one name");
   EXPECT_THAT(error("metric = \"nees\", at_most = 1, subjects = [\"a\", \"a\"]"),
               ::testing::HasSubstr("stands there twice"));
 }

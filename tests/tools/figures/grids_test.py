@@ -9,6 +9,7 @@ import numpy as np
 from grid_study import STUDY, WithGrids  # first: it makes the scripts known
 
 import data
+import grid_choice
 import grid_levels
 import grid_time
 import panels
@@ -256,6 +257,46 @@ class Levels(WithGrids):
         )
         self.assertIn("one axis twice", self.refused("grid_levels.py", self.file, "x.png", "--over", "rule"))
         self.assertIn("choose one talk", self.refused("roc.py", self.file, "x.png"))
+
+
+class Choices(WithGrids):
+    def lines(self, limit, talks=(5,)):
+        self.make_grids(talks=talks)
+        chosen = self.chosen()
+        return grid_choice.lines_of(chosen, "rule", ["none", "naive"], ["talk"], limit)
+
+    def test_of_each_rule_the_threshold_that_detects_most_within_the_limit(self):
+        # Beside the target one empty cell of eleven has 0.6 under none, a second one 0.85 under naive.
+        [(place, choices)] = self.lines(0.05)
+        self.assertEqual(place, ("5",))
+        self.assertEqual((choices["none"].value, choices["none"].threshold, choices["none"].false), (1.0, "0.8", 0.0))
+        self.assertEqual((choices["naive"].value, choices["naive"].threshold), (0.0, "0.95"))
+
+    def test_a_looser_limit_lets_more_through(self):
+        [(_, choices)] = self.lines(0.1)
+        self.assertEqual((choices["naive"].value, choices["naive"].threshold), (1.0, "0.8"))
+        self.assertAlmostEqual(choices["naive"].false, 1 / 11)
+
+    def test_a_limit_that_no_threshold_keeps_leaves_a_dash(self):
+        [(_, choices)] = self.lines(-1.0)
+        self.assertEqual(choices["none"].text(False), "–")
+
+    def test_the_table_and_its_numbers(self):
+        self.make_grids(talks=(5, 20))
+        self.draw("grid_choice.py", "t.md", "--false", "0.05", "--rows", "talk")
+        with open(self.path("t.md"), encoding="utf-8") as stream:
+            text = stream.read()
+        self.assertIn("| talk | none | naive |", text)
+        self.assertIn("| 5 | **1.00** (1.00…1.00) at 0.8 | 0.00 (0.00…0.00) at 0.95 |", text)
+        with open(self.path("t.csv"), encoding="utf-8") as stream:
+            rows = stream.read().splitlines()
+        self.assertEqual(rows[0], "talk,rule,p_detect,low,high,p_false,threshold")
+        self.assertEqual(len(rows), 5)
+
+    def test_mistakes_are_named(self):
+        self.make_grids()
+        self.assertIn("a table ends with .md or .csv", self.refused("grid_choice.py", self.file, "t.png"))
+        self.assertIn("colour", self.refused("grid_choice.py", self.file, "t.md", "--rows", "colour"))
 
 
 class Looks(unittest.TestCase):

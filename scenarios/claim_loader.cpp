@@ -64,8 +64,8 @@ class ExpectationReader {
 
  private:
   void check_keys() const {
-    std::vector<std::string> known = {"metric", "where",     "agents", "subjects",
-                                      "at",     "over",      "statistic", "scale"};
+    std::vector<std::string> known = {"metric", "where", "agents",    "subjects",
+                                      "at",     "over",  "statistic", "scale"};
     for (const auto& [name, kind] : kinds) known.emplace_back(name);
     expect_table(table_, path_);
     expect_known_keys(table_, path_, known);

@@ -56,10 +56,10 @@ struct Expectation {
   std::string metric;
   Where where;  ///< cells spoken of; an axis not named: all of it
   std::string agents =
-      "each";              ///< "each" | "mean" (over agents, a run) | "central" | "max" | a name
+      "each";  ///< "each" | "mean" (over agents, a run) | "central" | "max" | a name
   /// Of a series: these alone, each for itself, such as thresholds of alarms; empty: all
   std::vector<std::string> subjects;
-  std::string at = "end";  ///< "end" | "all" (every instant) | seconds as text
+  std::string at = "end";           ///< "end" | "all" (every instant) | seconds as text
   std::optional<std::string> over;  ///< divide by this metric (ratio of aggregates)
   std::string statistic =
       "auto";  ///< over repetitions: "auto" | "mean" | "rms" | "median" | "max" | "min" | "any"

@@ -17,9 +17,8 @@ import numpy as np
 import data
 import panels
 import style
+from grid_levels import ALONE, numeric
 from roc import DETECTED, FALSE, ends_by_threshold
-
-ALONE = "none"  # who hears nobody is the same whatever the radio does: studies may run it once
 
 
 class Choice:
@@ -46,6 +45,11 @@ class Choice:
         return f"{f'**{number}**' if best else number} ({self.low:.2f}…{self.high:.2f}) at {self.threshold}"
 
 
+def in_order(labels):
+    """Numbers by size, names as the study has them."""
+    return sorted(labels, key=float) if numeric(labels) else labels
+
+
 def cell_of(chosen, by, label, where):
     cell = chosen.cell(**{by: label}, **where)
     return chosen.cell(**{by: label}) if cell is None and label == ALONE else cell
@@ -55,7 +59,7 @@ def lines_of(chosen, by, labels, rows, limit):
     """[(labels of the rows' axes, {label: Choice})]"""
     detected, false = (ends_by_threshold(chosen, name) for name in (DETECTED, FALSE))
     lines = []
-    for place in itertools.product(*(chosen.labels(axis) for axis in rows)):
+    for place in itertools.product(*(in_order(chosen.labels(axis)) for axis in rows)):
         choices = {}
         for label in labels:
             cell = cell_of(chosen, by, label, dict(zip(rows, place)))

@@ -50,6 +50,14 @@ class BadScenario(Bed):
         text = text.replace('kind = "position", period_s = 1.0, sigma_m = 5.0', 'kind = "none"')
         self.bad("nothing to estimate", "run", self.write("bad.toml", text))
 
+    def test_an_explorer_that_no_run_could_bear(self):
+        text = ("duration_s = 9\nworld = { area = { cell_m = 5 } }\n[[agents]]\nkind = \"explorer\"\n"
+                "position_m = [1, 1]\nmotion = { kind = \"steered\", altitude_m = 10 }\n"
+                "exploration = { choice = \"random-walk\", speed_m_per_s = SPEED }\n")
+        self.good("run", self.write("good.toml", text.replace("SPEED", "5")))
+        file = self.write("bad.toml", text.replace("SPEED", "1e10"))
+        self.bad("bad.toml:7: agents[0].exploration.speed_m_per_s: a cell (5.0 m) must take", "run", file)
+
     def test_set_without_equals(self):
         self.bad("--set", "run", "ring.toml", "--set", "radio.rate_bps")
         self.bad("key=value", "run", "ring.toml", "--set", "radio.rate_bps")

@@ -72,6 +72,7 @@ class ExplorerChecker {
   KeyPath top_;
   KeyPath agents_ = top_["agents"];
   const GridSpec* first_ = nullptr;
+  const GridSpec* first_teller_ = nullptr;  // whose rule sends
 };
 
 void ExplorerChecker::check_world() const {
@@ -268,6 +269,13 @@ void ExplorerChecker::check_like_first(const GridSpec& grid, const KeyPath& path
          "all explorers of a run share belief, prior and limit: they understand each "
          "other, and have one central grid");
   }
+  // To tell each neighbour what it did not say itself, and to all what one believes.
+  const grid::Sends sends = grid::info(grid::rule_by_name(grid.fusion).value()).sends;
+  if (sends == grid::Sends::nothing) return;
+  if (first_teller_ == nullptr) first_teller_ = &grid;
+  if (sends == grid::info(grid::rule_by_name(first_teller_->fusion).value()).sends) return;
+  fail(path["fusion"], "\"" + grid.fusion + "\" and \"" + first_teller_->fusion +
+                           "\" of another explorer do not understand each other");
 }
 
 void ExplorerChecker::check_sensor(const AgentSpec& agent, const KeyPath& path) const {

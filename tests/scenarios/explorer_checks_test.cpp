@@ -284,6 +284,10 @@ TEST_F(ExplorerChecks, AllHaveOneKindOfGrid) {
   EXPECT_EQ(second("belief = \"beta\""), refused);
   EXPECT_EQ(second("prior = 0.4"), refused);
   EXPECT_EQ(second("log_odds_max = 19"), refused);
+  EXPECT_EQ(second("fusion = \"channel-robust\""),
+            "s.toml:21: agents[1].grid.fusion: \"channel-robust\" and \"naive\" of another "
+            "explorer do not understand each other");
+  EXPECT_EQ(second("fusion = \"none\""), "no error");
 }
 
 TEST_F(ExplorerChecks, ASensorMustReachTheGround) {

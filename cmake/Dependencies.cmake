@@ -26,4 +26,5 @@ endfunction()
 
 hearsay_find_plain(hearsay::random123 Random123/threefry.h "")
 hearsay_find_plain(hearsay::sleef sleef.h sleef)
+hearsay_find_plain(hearsay::png png.h png)
 hearsay_find_plain(hearsay::xxhash xxhash.h xxhash)

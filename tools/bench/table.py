@@ -26,13 +26,15 @@ GOALS = {
     "intersect/20": None, "intersect/100": None, "intersect/1000": None,
     "fuse_grid/100": None, "fuse_grid/1000": 0.5, "fuse_grid_channel/1000": None,
     "camera/400": None, "camera/6400": None, "camera/102400": None, "camera_grid/64": None, "camera_grid/4096": None,
+    "scan/6": None, "scan/12": None, "advance/6": None,
     "log": 1.0,
 }
 # Measured against another workload's floor: what a time-out an event costs beside none at all.
 FLOOR_OF = {"intersect": "means", "timeouts": "hold", "moving": "beacon", "fading": "beacon", "sensing": "beacon",
             "fuse_grid_channel": "fuse_grid"}
 # Microseconds a call must stay below.
-BELOW_US = {"fuse/4": 1.0, "fuse/6": 2.0, "add/20": 5.0, "weigh/20": 5.0, "means/20": 30.0, "intersect/20": 100.0}
+BELOW_US = {"fuse/4": 1.0, "fuse/6": 2.0, "add/20": 5.0, "weigh/20": 5.0, "means/20": 30.0, "intersect/20": 100.0,
+            "scan/6": 20.0, "scan/12": 20.0}
 # Exponents of time against steps, 20 to 1000: 1 within this.
 GROWS = ("add", "weigh", "means", "intersect")
 EXPONENT_WITHIN = 0.1
@@ -90,8 +92,8 @@ def verdict(met):
 def print_times(rates):
     """What has a goal in microseconds, and exponents."""
     us = {workload: 1e6 / statistics.median(sides["ours"]) for workload, sides in rates.items() if "ours" in sides}
-    print("\n## Fusion and trajectories\n")
-    print("CPU time of a call, from the same measurements. A trajectory is 6-D.\n")
+    print("\n## Fusion, trajectories and scans\n")
+    print("CPU time of a call, from the same measurements. A trajectory is 6-D, a scan 180 rays.\n")
     print("| workload | ours [µs] | goal [µs] | |")
     print("|---|---|---|---|")
     for workload, goal in BELOW_US.items():
@@ -111,9 +113,9 @@ def main():
     compiler = subprocess.run(["g++", "--version"], capture_output=True, text=True).stdout.split("\n")[0]
     print("# Benchmarks\n")
     print(f"{processor()}, {compiler}, release build. Median of five interleaved repetitions, in millions "
-          "a second (events, wake-ups, deliveries, fusions, trajectories, bytes of grids, cells in view, rows) of CPU time (log: of wall time). The "
+          "a second (events, wake-ups, deliveries, fusions, trajectories, bytes of grids, cells in view, scans, moves, rows) of CPU time (log: of wall time). The "
           "ratio is ours to a floor in the same binary and run: plain arrays and std::priority_queue, "
-          "dynamic-size Eigen (fuse), memcpy (fuse_grid), projections alone (camera), bare prepared inserts (log). Written by `tools/bench/run`.\n")
+          "dynamic-size Eigen (fuse), memcpy (fuse_grid), projections alone (camera), all walls (scan, advance), bare prepared inserts (log). Written by `tools/bench/run`.\n")
     print("| workload | floor | ours | ratio | goal | |")
     print("|---|---|---|---|---|---|")
     for workload in GOALS:
@@ -142,7 +144,9 @@ def main():
           "means (fusion and trajectories that allocate once warm are refused); `fuse_grid` fuses certainty grids of "
           "100×100 and 1000×1000 cells, in bytes read and written, and `fuse_grid_channel` takes off a third grid; "
           "`camera` updates a grid of 4096×4096 cells by an image in which 400 to 102,400 of them are in view, and "
-          "`camera_grid` grids of 64×64 and 4096×4096 with 1600 in view; `log` writes "
+          "`camera_grid` grids of 64×64 and 4096×4096 with 1600 in view; "
+          "`scan` is 180 rays of up to 10 m on a floor of 60×30 m with 6×6 or 12×12 rooms, beside each ray tried on "
+          "all walls, `advance` a short move of a disc there, beside its distance to all walls; `log` writes "
           "rows into SQLite.")
     print_times(rates)
 

@@ -7,7 +7,7 @@ install(DIRECTORY sim net filters agents scenarios tools
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hearsay FILES_MATCHING PATTERN "*.hpp"
   PATTERN figures EXCLUDE PATTERN bench EXCLUDE)
 install(DIRECTORY scenarios DESTINATION ${CMAKE_INSTALL_DATADIR}/hearsay
-  FILES_MATCHING PATTERN "*.toml")
+  FILES_MATCHING PATTERN "*.toml" REGEX "/plans/[^/]*[.]txt$")
 install(DIRECTORY tools/figures DESTINATION ${CMAKE_INSTALL_DATADIR}/hearsay/tools
   FILES_MATCHING PATTERN "*.py")
 install(EXPORT hearsay NAMESPACE hearsay:: DESTINATION ${config_dir})

@@ -1,0 +1,174 @@
+// Localization-spaces: what the position of a crumb is, and which crumbs a robot finds near. Store
+// and codec are written against the concept; here is the metric space of LOST, positions in the
+// robot's own odometry frame. A space of views (Shamshirdar 2019, section 4.2.1) has embeddings as
+// positions and a least similarity as its reach, and no frames to be transformed.
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace hearsay::trails {
+
+/// What TrailStore and the codec ask of a space S:
+/// - S::Position: a value, equality-comparable.
+/// - S::Reach: what "near" means in one query, with the robot's own position in it.
+/// - S::Index(S::Options): positions by slot (0, 1, 2, …; a slot has one position at a time). add()
+///   and remove() them; visit(reach, f) calls f(slot) once for each slot near, in any order.
+/// - S::numbers: floats a position takes on the air, written and read by put() and get().
+/// - S::sound(position): whether the index can hold it. What is not sound is refused, so that
+///   nothing that was heard can do harm.
+template <typename S>
+concept LocalizationSpace = std::equality_comparable<typename S::Position> &&
+    std::constructible_from<typename S::Index, const typename S::Options&> &&
+    requires(typename S::Index index, const typename S::Index& fixed, std::uint32_t slot,
+             const typename S::Position& position, const typename S::Reach& reach,
+             void (*f)(std::uint32_t), std::span<float> out, std::span<const float> in) {
+  index.add(slot, position);
+  index.remove(slot);
+  fixed.visit(reach, f);
+  { S::sound(position) } -> std::same_as<bool>;
+  S::put(position, out);
+  { S::get(in) } -> std::same_as<typename S::Position>;
+  requires std::same_as<const std::size_t, decltype(S::numbers)>;
+};
+
+/// In the frame of one robot. Float: the same number in memory and on the air, 1 mm at 10 km.
+struct Point {
+  float x_m = 0.0F, y_m = 0.0F;
+  friend bool operator==(const Point&, const Point&) = default;
+};
+inline Point point(double x_m, double y_m) {
+  return {static_cast<float>(x_m), static_cast<float>(y_m)};
+}
+
+/// What the robot looks at (Sadat & Vaughan, "Blinkered LOST", ICRA 2010: 60–120° wide).
+struct Field {
+  double heading_rad = 0.0;  ///< its middle
+  double width_rad = 0.0;    ///< from edge to edge, in (0, 2π]; its edges belong to it
+};
+
+/// Crumbs nearer than `radius_m` (Shamshirdar 2019, section 4.2.5: dist(L_C, L_R) < r), and in the
+/// field of view if there is one. A crumb at the robot's very position is in view.
+struct MetricReach {
+  Point at;
+  double radius_m = 1.0;
+  std::optional<Field> field = std::nullopt;
+};
+
+/// Points in square cells, each cell a linked list; cells are found by a lattice that repeats
+/// itself only after as many cells as there are points or more, along rows and along columns:
+/// list = (column + row · stride) mod lists. A query looks at lists of the cells it touches alone,
+/// if these are fewer than the points; else at each point.
+class MetricIndex {
+ public:
+  struct Options {
+    double cell_m = 1.0;  ///< best about the sense radius; in [0.01, 1e6]
+  };
+  /// @throws BrokenInvariant for another cell.
+  explicit MetricIndex(const Options& options);
+
+  /// @throws BrokenInvariant for a slot in use, or a position that is not sound.
+  void add(std::uint32_t slot, const Point& at);
+  /// @throws BrokenInvariant for a slot not in use.
+  void remove(std::uint32_t slot);
+  std::size_t size() const { return size_; }
+
+  /// @throws BrokenInvariant for a position that is not sound, a radius that is negative or no
+  /// number, or a field outside its range.
+  template <typename F>
+  void visit(const MetricReach& reach, F&& f) const {
+    const Sight sight(reach);
+    look(sight, [&](std::uint32_t slot, bool same_cell) {
+      if (same_cell && sight.sees(nodes_[slot].at)) f(slot);
+    });
+  }
+  /// How many points such a visit looks at: its cost.
+  std::size_t looks(const MetricReach& reach) const {
+    std::size_t count = 0;
+    look(Sight(reach), [&](std::uint32_t, bool) { ++count; });
+    return count;
+  }
+
+ private:
+  static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+  struct Node {
+    Point at;
+    std::int32_t column = 0, row = 0;
+    std::uint32_t next = none, before = none;
+    bool used = false;
+  };
+  /// A reach, ready to be asked.
+  struct Sight {
+    explicit Sight(const MetricReach& reach);
+    bool sees(const Point& p) const;
+    Point at;
+    double radius_m, radius_squared;
+    bool has_field = false;
+    double heading_x = 1.0, heading_y = 0.0, edge_cos = -1.0;
+  };
+  struct Block {
+    bool all = false;
+    std::int32_t column = 0, last_column = 0, row = 0, last_row = 0;
+  };
+  /// Calls f(slot, whether it lies in a cell of the block) for all points that are looked at; a
+  /// list is looked at once for each cell of the block that is filed in it.
+  template <typename F>
+  void look(const Sight& sight, F&& f) const {
+    const Block block = block_of(sight);
+    if (block.all) {
+      for (std::uint32_t slot = 0; slot < nodes_.size(); ++slot) {
+        if (nodes_[slot].used) f(slot, true);
+      }
+      return;
+    }
+    for (std::int32_t row = block.row; row <= block.last_row; ++row) {
+      for (std::int32_t column = block.column; column <= block.last_column; ++column) {
+        for (std::uint32_t slot = heads_[list_of(column, row)]; slot != none;
+             slot = nodes_[slot].next) {
+          f(slot, nodes_[slot].column == column && nodes_[slot].row == row);
+        }
+      }
+    }
+  }
+  Block block_of(const Sight& sight) const;
+  std::uint32_t list_of(std::int32_t column, std::int32_t row) const {
+    return (static_cast<std::uint32_t>(column) + static_cast<std::uint32_t>(row) * stride_) & mask_;
+  }
+  void link(std::uint32_t slot);
+  void resize_lists(std::uint32_t bits);
+
+  double cell_m_;
+  std::size_t size_ = 0;
+  std::uint32_t bits_ = 0, mask_ = 0, stride_ = 1;
+  std::vector<std::uint32_t> heads_;  ///< of lists: 2^bits
+  std::vector<Node> nodes_;           ///< by slot
+};
+
+struct MetricSpace {
+  using Position = Point;
+  using Reach = MetricReach;
+  using Index = MetricIndex;
+  using Options = MetricIndex::Options;
+  static constexpr std::size_t numbers = 2;
+  /// Coordinates beyond it are no odometry.
+  static constexpr float position_max_m = 1e6F;
+
+  /// Both coordinates finite and within position_max_m.
+  static bool sound(const Point& p) {
+    return p.x_m >= -position_max_m && p.x_m <= position_max_m && p.y_m >= -position_max_m &&
+           p.y_m <= position_max_m;
+  }
+  static void put(const Point& p, std::span<float> out) {
+    out[0] = p.x_m;
+    out[1] = p.y_m;
+  }
+  static Point get(std::span<const float> in) { return {in[0], in[1]}; }
+};
+static_assert(LocalizationSpace<MetricSpace>);
+
+}  // namespace hearsay::trails

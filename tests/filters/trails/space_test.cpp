@@ -1,0 +1,143 @@
+#include "filters/trails/space.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "sim/kernel/error.hpp"
+#include "sim/math/functions.hpp"
+#include "tests/filters/trails/samples.hpp"
+
+namespace hearsay::trails {
+namespace {
+
+std::vector<std::uint32_t> found(const MetricIndex& index, const MetricReach& reach) {
+  std::vector<std::uint32_t> slots;
+  index.visit(reach, [&](std::uint32_t slot) { slots.push_back(slot); });
+  std::sort(slots.begin(), slots.end());
+  return slots;
+}
+
+/// By angles, where the index goes by products.
+bool near(const MetricReach& reach, const Point& p) {
+  const double x = double{p.x_m} - reach.at.x_m, y = double{p.y_m} - reach.at.y_m;
+  if (!(x * x + y * y < reach.radius_m * reach.radius_m)) return false;
+  if (!reach.field || (x == 0.0 && y == 0.0)) return true;
+  const double off = math::wrap_angle(math::atan2(y, x) - reach.field->heading_rad);
+  return std::fabs(off) <= 0.5 * reach.field->width_rad;
+}
+
+MetricReach random_reach(Stream& random, double half_side_m) {
+  MetricReach reach{random_point(random, half_side_m), random.uniform(0.0, 5.0), std::nullopt};
+  if (random.bernoulli(0.1)) reach.radius_m = random.uniform(0.0, 300.0);
+  if (random.bernoulli(0.5)) {
+    reach.field = Field{random.uniform(-10.0, 10.0), random.uniform(0.01, 2.0 * math::pi)};
+  }
+  return reach;
+}
+
+TEST(MetricIndex, FindsWhatAComparisonWithEveryPointFinds) {
+  Stream random = stream("index");
+  for (const double half_side_m : {4.0, 60.0, 900.0}) {
+    MetricIndex index({.cell_m = 1.3});
+    std::vector<std::optional<Point>> points(700);
+    std::size_t seen = 0;
+    for (int step = 0; step < 4000; ++step) {
+      const auto slot = static_cast<std::uint32_t>(random.below(points.size()));
+      if (points[slot]) {
+        index.remove(slot);
+        points[slot].reset();
+      } else {
+        points[slot] = random_point(random, half_side_m);
+        index.add(slot, *points[slot]);
+      }
+      if (step % 4 != 0) continue;
+      const MetricReach reach = random_reach(random, half_side_m);
+      std::vector<std::uint32_t> expected;
+      for (std::uint32_t i = 0; i < points.size(); ++i) {
+        if (points[i] && near(reach, *points[i])) expected.push_back(i);
+      }
+      ASSERT_EQ(found(index, reach), expected) << half_side_m << ", step " << step;
+      seen += expected.size();
+    }
+    EXPECT_GT(seen, 500u);
+  }
+}
+
+TEST(MetricIndex, APointAtTheRadiusIsNotNear) {
+  MetricIndex index({});
+  index.add(0, {3.0F, 4.0F});
+  EXPECT_TRUE(found(index, {{0.0F, 0.0F}, 5.0}).empty());
+  EXPECT_EQ(found(index, {{0.0F, 0.0F}, 5.001}).size(), 1u);
+  EXPECT_TRUE(found(index, {{3.0F, 4.0F}, 0.0}).empty());
+}
+
+TEST(MetricIndex, AFieldOfViewLooksWhereTheRobotHeads) {
+  MetricIndex index({});
+  index.add(0, {1.0F, 0.0F});
+  index.add(1, {0.0F, 1.0F});
+  index.add(2, {-1.0F, 0.0F});
+  index.add(3, {0.0F, 0.0F});  // where the robot is
+  const auto in_field = [&](double heading_rad, double width_rad) {
+    return found(index, {{0.0F, 0.0F}, 2.0, Field{heading_rad, width_rad}});
+  };
+  using Slots = std::vector<std::uint32_t>;
+  EXPECT_EQ(in_field(0.0, 1.0), (Slots{0, 3}));
+  EXPECT_EQ(in_field(math::pi / 2, 1.0), (Slots{1, 3}));
+  EXPECT_EQ(in_field(math::pi, 1.0), (Slots{2, 3}));
+  EXPECT_EQ(in_field(-math::pi, 1.0), (Slots{2, 3}));
+  EXPECT_EQ(in_field(math::pi / 4, 1.6), (Slots{0, 1, 3}));
+  EXPECT_EQ(in_field(math::pi / 2, 3.2), (Slots{0, 1, 2, 3}));
+  EXPECT_EQ(in_field(1.0, 2.0 * math::pi), (Slots{0, 1, 2, 3}));
+}
+
+TEST(MetricIndex, LooksAtPointsInReachAndNotAtAllThatAre) {
+  // Trails along both axes and a diagonal, 4 km each, a point every half metre.
+  MetricIndex index({.cell_m = 1.0});
+  std::uint32_t slot = 0;
+  for (int i = -4000; i < 4000; ++i) {
+    const float s = 0.5F * static_cast<float>(i);
+    index.add(slot++, {s, 0.25F});
+    index.add(slot++, {0.25F, s});
+    index.add(slot++, {s, s});
+  }
+  Stream random = stream("looks");
+  std::size_t most = 0;
+  for (int i = 0; i < 500; ++i) {
+    const float s = static_cast<float>(random.uniform(-1900.0, 1900.0));
+    for (const Point at : {Point{s, 0.3F}, Point{0.3F, s}, Point{s, s}}) {
+      most = std::max(most, index.looks({at, 1.0}));
+    }
+  }
+  EXPECT_GE(most, 6u);
+  EXPECT_LE(most, 60u);  // of 24000
+  EXPECT_EQ(index.looks({{0.0F, 0.0F}, 1e6}), 24000u);
+  EXPECT_EQ(index.looks({{0.0F, 0.0F}, std::numeric_limits<double>::infinity()}), 24000u);
+}
+
+TEST(MetricIndex, WhatItCannotHoldIsRefused) {
+  const float inf = std::numeric_limits<float>::infinity();
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  for (const Point p :
+       {Point{inf, 0.0F}, Point{0.0F, nan}, Point{2e6F, 0.0F}, Point{0.0F, -2e6F}}) {
+    EXPECT_FALSE(MetricSpace::sound(p));
+    EXPECT_THROW(MetricIndex({}).add(0, p), BrokenInvariant);
+    EXPECT_THROW(MetricIndex({}).looks({p, 1.0}), BrokenInvariant);
+  }
+  EXPECT_THROW(MetricIndex({.cell_m = 0.001}), BrokenInvariant);
+  EXPECT_THROW(MetricIndex({.cell_m = 1e7}), BrokenInvariant);
+  MetricIndex index({.cell_m = 0.01});
+  index.add(0, {1e6F, -1e6F});
+  EXPECT_EQ(found(index, {{1e6F, -1e6F}, 0.1}).size(), 1u);
+  EXPECT_THROW(index.add(0, {}), BrokenInvariant);
+  EXPECT_THROW(index.remove(1), BrokenInvariant);
+  const Point at{};
+  EXPECT_THROW(index.looks({at, -1.0}), BrokenInvariant);
+  EXPECT_THROW(index.looks({at, double{nan}}), BrokenInvariant);
+  EXPECT_THROW(index.looks({at, 1.0, Field{0.0, 0.0}}), BrokenInvariant);
+  EXPECT_THROW(index.looks({at, 1.0, Field{0.0, 6.3}}), BrokenInvariant);
+  EXPECT_THROW(index.looks({at, 1.0, Field{double{inf}, 1.0}}), BrokenInvariant);
+}
+
+}  // namespace
+}  // namespace hearsay::trails

@@ -91,6 +91,11 @@ class Reader {
     offset_ += count;
     return body_.subspan(offset_ - count, count);
   }
+  /// The same, of records that begin with a double: from the next multiple of 8 on.
+  std::span<const std::byte> records(std::size_t count) {
+    offset_ = aligned(offset_, 8);
+    return octets(count);
+  }
 
  private:
   std::span<const std::byte> body_;

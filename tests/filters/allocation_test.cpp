@@ -20,6 +20,9 @@
 #include "filters/grid/ledger.hpp"
 #include "filters/grid/regions.hpp"
 #include "filters/ledger/ledger.hpp"
+#include "filters/trails/codec.hpp"
+#include "filters/trails/frames.hpp"
+#include "filters/trails/laying.hpp"
 #include "tests/filters/gaussian/samples.hpp"
 
 #if defined(__SANITIZE_ADDRESS__)
@@ -318,6 +321,72 @@ TEST(Allocation, DoesNotHappenInWarmLooksAtGrids) {
   EXPECT_GT(allocations_of(work), 0u);
   EXPECT_EQ(allocations_of(work), 0u);
   EXPECT_GT(gain, 0.0);
+}
+
+/// A robot that lays, tells, hears and follows; each call is a round from A to B.
+class TrailTeam {
+ public:
+  void go() {
+    for (int step = 0; step < 100; ++step) {
+      now_s_ += 1.0;
+      const trails::Point at = trails::point(step, 0.1 * (round_ % 7));
+      trail_.lay(now_s_, at);
+      followed_ += store_.best(round_ % 2, {at, 2.5, trails::Field{0.0, 2.0}}, now_s_) != nullptr;
+      store_.within(round_ % 2, {at, 2.0, {}}, now_s_, found_);
+    }
+    const trails::EventId event = ++round_ % 2;
+    store_.merge(
+        trails::Place{event, {99.0F * static_cast<float>(event), 0.0F}, now_s_, numbers_.take()},
+        now_s_);
+    for (const trails::Crumb& crumb : trail_.complete(event, now_s_, numbers_)) {
+      store_.merge(crumb, now_s_);
+    }
+    news_.clear();
+    store_.news(cursor_, {}, now_s_, news_);
+    for (const auto& bytes : encoder_.encode({0, 0, round_, store_.places(), news_}, 500)) {
+      hear(bytes);
+    }
+  }
+  std::size_t followed() const { return followed_; }
+
+ private:
+  void hear(std::span<const std::byte> bytes) {
+    const auto packet = trails::MetricPacket::parse(bytes);
+    places_.clear();
+    for (std::size_t i = 0; i < packet->places(); ++i) places_.push_back(packet->place(i));
+    trails::common_places(places_, store_.places(), pairs_);
+    const auto alignment = trails::align(pairs_, {.optimistic = true});
+    for (std::size_t i = 0; i < packet->crumbs(); ++i) {
+      trails::Crumb crumb = trails::mapped(packet->crumb(i), alignment->map);
+      crumb.identity.robot = 1;  // as if from somebody else
+      store_.merge(crumb, now_s_, 1);
+    }
+  }
+  trails::MetricStore store_{{.robot = 0, .crumbs_max = 1000, .age_max_s = 300.0}};
+  trails::TemporaryTrail<trails::Point> trail_{{.interval_s = 1.0}};
+  trails::Numbering numbers_{0};
+  trails::Cursor cursor_;
+  trails::MetricEncoder encoder_;
+  std::vector<trails::Crumb> news_, found_;
+  std::vector<trails::Place> places_;
+  std::vector<trails::PointPair> pairs_;
+  double now_s_ = 0.0;
+  std::uint32_t round_ = 0;
+  std::size_t followed_ = 0;
+};
+
+TEST(Allocation, DoesNotHappenInWarmTrails) {
+  TrailTeam team;
+  EXPECT_GT(allocations_of([&] {
+              for (int round = 0; round < 10; ++round) team.go();
+            }),
+            0u);
+  const std::size_t followed = team.followed();
+  EXPECT_EQ(allocations_of([&] {
+              for (int round = 0; round < 10; ++round) team.go();
+            }),
+            0u);
+  EXPECT_GT(team.followed(), followed);
 }
 
 }  // namespace

@@ -194,6 +194,17 @@ TEST(TrailCodec, WhatCannotBeIsRefused) {
   }
 }
 
+TEST(TrailCodec, MorePlacesThanAPacketMayHaveAreRefused) {
+  Stream random = stream("places");
+  for (const std::size_t count : {packet_places_max, packet_places_max + 1}) {
+    std::vector<std::byte> packet;
+    gaussian::cdr::Writer writer = gaussian::cdr::begin(packet_size(2, count, 0) - 4, packet);
+    codec::write_head(writer, {}, 2);
+    codec::write_body<MetricSpace>(writer, some_places(random, count), {});
+    EXPECT_EQ(MetricPacket::parse(packet).has_value(), count == packet_places_max);
+  }
+}
+
 TEST(TrailCodec, MutatedPacketsAreRefusedOrSoundAndEncodeAgain) {
   Stream random = stream("mutations");
   const auto original = encoded(some_places(random, 2), random_crumbs(random, 4, 50.0, 100.0))[0];

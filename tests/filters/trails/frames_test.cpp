@@ -148,8 +148,9 @@ TEST(Frames, TooFewPlacesAreDroppedOrTranslated) {
 
 TEST(Frames, PlacesThatCoincideAreOnePlace) {
   const PointPair a{{1.0F, 2.0F}, {4.0F, 1.0F}};
-  for (const PointPair& b : {a, PointPair{a.from, {9.0F, 9.0F}}, PointPair{{5.0F, 5.0F}, a.to},
-                             PointPair{{1.001F, 2.0F}, {4.0F, 1.001F}}}) {
+  for (const PointPair& b :
+       {a, PointPair{a.from, {9.0F, 9.0F}}, PointPair{{5.0F, 5.0F}, a.to},
+        PointPair{{1.001F, 2.0F}, {4.0F, 9.0F}}, PointPair{{1.0F, 9.0F}, {4.0F, 1.001F}}}) {
     EXPECT_FALSE(align(std::vector{a, b}, {}));
     const auto moved = align(std::vector{a, b}, {.optimistic = true});
     ASSERT_TRUE(moved);

@@ -71,6 +71,18 @@ TEST(TemporaryTrail, APauseLaysNothingAndIsPartOfD) {
   EXPECT_EQ(trail.complete(0, 34.0, numbers)[0].distance_s, 34.0F);
 }
 
+TEST(TemporaryTrail, SumsOfStepsThatFallShortByRoundingAreInTime) {
+  Temporary trail({.interval_s = 1.0});
+  Numbering numbers(0);
+  double now_s = 0.0;  // 10 · 0.1 adds up to less than 1
+  for (int i = 0; i <= 100; ++i, now_s += 0.1) trail.lay(now_s, {});
+  const auto crumbs = trail.complete(0, 20.0, numbers);
+  ASSERT_EQ(crumbs.size(), 11u);
+  for (std::size_t i = 0; i < 11; ++i) {
+    EXPECT_NEAR(crumbs[i].created_s, static_cast<double>(i), 1e-9);
+  }
+}
+
 TEST(TemporaryTrail, StepsThatDoNotDivideTheIntervalDoNotSlowItDown) {
   Temporary trail({.interval_s = 1.0});
   for (int i = 0; i <= 1000; ++i) trail.lay(0.3 * i, {});

@@ -51,6 +51,12 @@ double enter_rounded(Point p, Vector d, const Segment& s, double r) {
   return t;
 }
 
+/// The way until a coordinate leaves 0 … side at this speed.
+double until_edge(double at, double speed, double side) {
+  if (speed == 0.0) return never;
+  return speed > 0.0 ? (side - at) / speed : -at / speed;
+}
+
 /// The way until a disc of radius r touches something, `gap` being the vector from it to the
 /// disc's centre and enter(r) the way until the centre is within r. The distance to what is convex
 /// has, along a line, no minimum but one: where it does not fall at first it never will.
@@ -73,7 +79,9 @@ Advance advance(const WallIndex& walls, Point from, Point to, double radius_m,
   const double length = norm(to - from);
   if (length == 0.0) return {from, 0.0, false};
   const Vector d{(to.x_m - from.x_m) / length, (to.y_m - from.y_m) / length};
-  double free = never;
+  // Only a disc that begins in a wall can get to the edge of the plan.
+  double free = std::min(until_edge(from.x_m, d.x, walls.width_m()),
+                         until_edge(from.y_m, d.y, walls.height_m()));
   for (const Disc& other : others) {
     const double r = radius_m + other.radius_m;
     free = std::min(free, until_contact(from - other.at, d, r, [&](double limit) {
@@ -89,15 +97,16 @@ Advance advance(const WallIndex& walls, Point from, Point to, double radius_m,
     const Point b{from.x_m + d.x * end, from.y_m + d.y * end};
     const Point low{std::min(a.x_m, b.x_m) - reach, std::min(a.y_m, b.y_m) - reach};
     const Point high{std::max(a.x_m, b.x_m) + reach, std::max(a.y_m, b.y_m) + reach};
-    const bool inside = walls.for_each_in(low, high, [&](const Segment& s) {
+    walls.for_each_in(low, high, [&](const Segment& s) {
       free = std::min(free, until_contact(apart(from, s), d, radius_m, [&](double limit) {
                         return enter_rounded(from, d, s, limit);
                       }));
     });
-    if (!inside) break;
   }
   if (!(free < length)) return {to, length, false};
-  return {{from.x_m + d.x * free, from.y_m + d.y * free}, free, true};
+  const Point at{std::clamp(from.x_m + d.x * free, 0.0, walls.width_m()),
+                 std::clamp(from.y_m + d.y * free, 0.0, walls.height_m())};
+  return {at, free, true};
 }
 
 ArcAdvance advance_along_arc(const WallIndex& walls, const Pose& from, double length_m,

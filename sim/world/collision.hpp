@@ -6,7 +6,8 @@
 // From where a move stopped it may go on wherever the distance to the wall does not fall: away from
 // it, or along it. Headings are rounded, so a disc that touches may come closer by `slack_m` before
 // it is stopped again; no sequence of moves brings it farther in than 1e-9 m. A disc that overlaps
-// a wall by more (a barrier came up, or somebody put it there) may still move away.
+// a wall by more (a barrier came up, or somebody put it there) may still move away, and
+// one that is inside a thick wall goes on to its surface, or to the edge of the plan: no farther.
 #pragma once
 
 #include <span>

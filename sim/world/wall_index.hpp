@@ -65,9 +65,9 @@ class WallIndex {
   }
 
   /// Calls f(segment) for all that stand and pass through the cells of a box, some of them more
-  /// than once; returns whether the box and the plan have a cell in common.
+  /// than once.
   template <typename F>
-  bool for_each_in(Point low, Point high, F&& f) const {
+  void for_each_in(Point low, Point high, F&& f) const {
     const int c0 = std::max(0, column(low.x_m)), c1 = std::min(columns_ - 1, column(high.x_m));
     const int r0 = std::max(0, row(low.y_m)), r1 = std::min(rows_ - 1, row(high.y_m));
     for (int r = r0; r <= r1; ++r) {
@@ -77,7 +77,6 @@ class WallIndex {
         }
       }
     }
-    return c0 <= c1 && r0 <= r1;
   }
 
  private:

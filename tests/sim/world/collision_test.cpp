@@ -171,6 +171,19 @@ TEST(Collision, WhoStandsInABarrierThatComesUpMayLeaveAwayFromItsEdge) {
   EXPECT_FALSE(advance(walls, {3.9, 5.0}, {5.0, 5.0}, 0.3).blocked);
 }
 
+TEST(Collision, WhoStandsInAThickWallStaysWithinThePlan) {
+  const WallIndex walls(Plan(parse_text("######\n######\n##  ##\n######\n", "p", 1.0)));
+  const Advance out = advance(walls, {0.7, 2.9}, {-20.3, 2.9}, 0.3);
+  EXPECT_TRUE(out.blocked);
+  EXPECT_EQ(out.at, (Point{0.0, 2.9}));
+  EXPECT_NEAR(advance(walls, {0.7, 1.5}, {5.0, 1.5}, 0.3).at.x_m, 1.7, 1e-12);
+  for (double angle = 0.0; angle < 6.3; angle += 0.37) {
+    const ArcAdvance arc = advance_along_arc(walls, {{0.7, 2.9}, angle}, 50.0, 1.3, 0.3);
+    EXPECT_TRUE(arc.blocked);
+    EXPECT_TRUE(walls.contains(arc.end.at));
+  }
+}
+
 TEST(Collision, AnArcEndsWhereItsCircleDoes) {
   const WallIndex walls(Plan(20.0, 20.0, {}));
   for (const double turn : {0.0, 1e-12, 0.3, -2.0, 6.0}) {

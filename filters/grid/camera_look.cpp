@@ -23,19 +23,27 @@ constexpr double least_variance = 0.24;
 struct Pixel {
   double u, v;
 };
-/// Nothing unless the point lies ahead. H as in homography_of().
-std::optional<Pixel> pixel_of(const Matrix3& homography, Point at) {
-  const auto row = [&](int i) {
-    return homography(i, 0) * at.x_m + homography(i, 1) * at.y_m + homography(i, 2);
-  };
-  const double ahead = row(2);
-  if (!(ahead > 0.0)) return std::nullopt;
-  return Pixel{row(0) / ahead, row(1) / ahead};
-}
 
-/// H with s·(u, v, 1) = H·(x, y, 1) for points (x, y) on the plane z = `ground_m`, s > 0 the
-/// distance ahead: K·R·(e_x, e_y, (0, 0, z) − t), eq. 3.57.
-Matrix3 homography_of(const gaussian::Intrinsics& lens, const CameraPose& pose, double ground_m) {
+/// s·(u, v, 1) = H·(x, y, 1) + h·`up` for points (x, y) at height h over the plane z = `ground_m`,
+/// s > 0 the distance ahead: H = K·R·(e_x, e_y, (0, 0, z) − t), up = K·R·e_z, eq. 3.57.
+struct Projection {
+  Matrix3 homography;
+  Vector3 up;
+
+  /// Nothing unless the point lies ahead.
+  std::optional<Pixel> pixel(Point at, double height_m) const {
+    const auto row = [&](int i) {
+      const double on_plane =
+          homography(i, 0) * at.x_m + homography(i, 1) * at.y_m + homography(i, 2);
+      return height_m != 0.0 ? on_plane + height_m * up(i) : on_plane;
+    };
+    const double ahead = row(2);
+    if (!(ahead > 0.0)) return std::nullopt;
+    return Pixel{row(0) / ahead, row(1) / ahead};
+  }
+};
+Projection projection_of(const gaussian::Intrinsics& lens, const CameraPose& pose,
+                         double ground_m) {
   Matrix3 k;
   k << lens.focal_u, lens.skew, lens.center_u, 0.0, lens.focal_v, lens.center_v, 0.0, 0.0, 1.0;
   const Matrix3 to_pixel = k * pose.axes.transpose();
@@ -43,7 +51,7 @@ Matrix3 homography_of(const gaussian::Intrinsics& lens, const CameraPose& pose, 
   homography.col(0) = to_pixel.col(0);
   homography.col(1) = to_pixel.col(1);
   homography.col(2) = to_pixel * (Vector3(0.0, 0.0, ground_m) - pose.position_m);
-  return homography;
+  return {homography, to_pixel.col(2)};
 }
 
 /// First and last whole number in [from, to], within 0 … count − 1.
@@ -189,8 +197,10 @@ std::optional<double> marked_share(const SegmentedImage& image, const PixelEllip
   return std::min(1.0, marked / all);
 }
 
-Footprint ground_in_image(const GridCamera& camera, const CameraPose& pose, double margin_m) {
-  const auto reach_m = reach(pose.position_m(2) - camera.ground_m, camera.range_max_m);
+Footprint ground_in_image(const GridCamera& camera, const CameraPose& pose, double margin_m,
+                          const Relief* relief) {
+  const Slab heights = slab_of(relief, camera.ground_m);
+  const auto reach_m = heights.reach(pose.position_m(2), camera.range_max_m);
   if (!reach_m) return {};
   const gaussian::Intrinsics& k = camera.lens;
   const double right = camera.width - 0.5, low = camera.height - 0.5;
@@ -207,30 +217,36 @@ Footprint ground_in_image(const GridCamera& camera, const CameraPose& pose, doub
     // The margin is along the plane. A wall that is level has none: it cuts all or nothing.
     const double level = std::sqrt(inward(0) * inward(0) + inward(1) * inward(1));
     const double out = level > 0.0 ? margin_m / level : 0.0;
-    ground.cut(pose.position_m - out * Vector3(inward(0), inward(1), 0.0), inward, camera.ground_m);
+    ground.cut(pose.position_m - out * Vector3(inward(0), inward(1), 0.0), inward,
+               heights.before(inward));
   }
   return ground;
 }
 
 void cells_in_image(const GridCamera& camera, const CameraPose& pose, const Area& area,
-                    std::vector<CellInView>& out) {
+                    std::vector<CellInView>& out, const Relief* relief) {
   require_camera(camera);
   require(pose.position_m.allFinite() && pose.axes.allFinite(), "GridCamera: a pose is finite");
   out.clear();
+  relief = uneven(relief, area);
   const double right = camera.width - 0.5, low = camera.height - 0.5;
-  const Matrix3 homography = homography_of(camera.lens, pose, camera.ground_m);
-  for_each_cell(ground_in_image(camera, pose), area, [&](int cell) {
+  const Projection projection = projection_of(camera.lens, pose, camera.ground_m);
+  const Vector3 over_plane = pose.position_m - Vector3(0.0, 0.0, camera.ground_m);
+  for_each_cell(ground_in_image(camera, pose, 0.0, relief), area, [&](int cell) {
     const Point at = area.centre(cell);
-    const auto pixel = pixel_of(homography, at);
+    const double height_m = relief != nullptr ? relief->height_m(cell) : 0.0;
+    const auto pixel = projection.pixel(at, height_m);
     if (!pixel || !(pixel->u >= -0.5 && pixel->u < right)) return;
     if (!(pixel->v >= -0.5 && pixel->v < low)) return;
-    const Vector3 to = Vector3(at.x_m, at.y_m, camera.ground_m) - pose.position_m;
+    const Vector3 to = Vector3(at.x_m, at.y_m, camera.ground_m + height_m) - pose.position_m;
     const double rho = to.dot(to) / (camera.range_max_m * camera.range_max_m);
-    if (rho < 1.0) out.push_back({cell, faded(camera.detector, rho)});
+    if (!(rho < 1.0) || (relief != nullptr && !relief->sees(over_plane, cell))) return;
+    out.push_back({cell, faded(camera.detector, rho)});
   });
 }
 
-CameraLook::CameraLook(const GridCamera& camera, const Area& area) : camera_(camera), area_(area) {
+CameraLook::CameraLook(const GridCamera& camera, const Area& area, const Relief* relief)
+    : camera_(camera), area_(area), relief_(uneven(relief, area)) {
   require_camera(camera);
 }
 
@@ -239,7 +255,7 @@ bool CameraLook::look(const CameraPose& pose, const Matrix& covariance) {
           "CameraLook: the covariance of a pose is 6×6");
   in_view_.clear();
   if (!set_samples(pose, covariance)) return false;
-  cells_in_image(camera_, pose, area_, in_view_);
+  cells_in_image(camera_, pose, area_, in_view_, relief_);
   return true;
 }
 
@@ -255,22 +271,26 @@ bool CameraLook::set_samples(const CameraPose& pose, const Matrix& covariance) {
     const Vector& e = points->points[i];
     CameraPose moved = pose.turned(e.segment<3>(3));
     moved.position_m += e.head<3>() - Vector3(e(6), e(7), 0.0);  // a cell moves against it
-    samples_[i] = {homography_of(camera_.lens, moved, camera_.ground_m), points->weights[i]};
+    const auto [homography, up] = projection_of(camera_.lens, moved, camera_.ground_m);
+    samples_[i] = {homography, up, points->weights[i]};
   }
   return true;
 }
 
 std::optional<PixelEllipse> CameraLook::ellipse(int cell) const {
   const Point at = area_.centre(cell);
+  const double height_m = relief_ != nullptr ? relief_->height_m(cell) : 0.0;
   std::array<double, 2 * dimension + 1> us, vs;
   PixelEllipse e{0.0, 0.0, 0.0, 0.0, 0.0};
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     const Matrix3& h = samples_[i].homography;
-    const double ahead = h(2, 0) * at.x_m + h(2, 1) * at.y_m + h(2, 2);
+    Vector3 raised = h.col(2);
+    if (height_m != 0.0) raised += height_m * samples_[i].up;
+    const double ahead = h(2, 0) * at.x_m + h(2, 1) * at.y_m + raised(2);
     if (!(ahead > 0.0)) return std::nullopt;
     const double scale = 1.0 / ahead;
-    us[i] = (h(0, 0) * at.x_m + h(0, 1) * at.y_m + h(0, 2)) * scale;
-    vs[i] = (h(1, 0) * at.x_m + h(1, 1) * at.y_m + h(1, 2)) * scale;
+    us[i] = (h(0, 0) * at.x_m + h(0, 1) * at.y_m + raised(0)) * scale;
+    vs[i] = (h(1, 0) * at.x_m + h(1, 1) * at.y_m + raised(1)) * scale;
     e.u += samples_[i].weight * us[i];
     e.v += samples_[i].weight * vs[i];
   }

@@ -1,4 +1,5 @@
-// A camera over a grid on a level plane, nadir or tilted. Merino 2007, sections 3.5 and 4.2.1.
+// A camera over a grid on a level plane or a relief, nadir or tilted. Merino 2007, sections 3.5 and
+// 4.2.1.
 //
 // An image was segmented: each pixel is taken for the thing sought, or for background. Where a cell
 // is in the image is uncertain, since the camera's pose is, and since a cell is not a point. The
@@ -17,6 +18,7 @@
 #include "filters/gaussian/camera.hpp"
 #include "filters/gaussian/propagation.hpp"
 #include "filters/grid/footprint.hpp"
+#include "filters/grid/relief.hpp"
 #include "filters/grid/sensors.hpp"
 
 namespace hearsay::grid {
@@ -78,22 +80,27 @@ struct GridCamera {
 };
 
 /// What of the plane is in the image and nearer than range_max_m (squared off), and `margin_m` ≥ 0
-/// more on every side; nothing unless the camera is above the plane and it within reach.
+/// more on every side; nothing unless the camera is above the plane and it within reach. Of a
+/// relief: a polygon around all that is so at its cells' heights.
 Footprint ground_in_image(const GridCamera& camera, const gaussian::CameraPose& pose,
-                          double margin_m = 0.0);
+                          double margin_m = 0.0, const Relief* relief = nullptr);
 
 /// The cells with centres in the image and nearer than range_max_m, rising, with P_D and P_F at
 /// their distance: costs as much as there are of these. `out` is overwritten, its storage reused.
-/// @throws BrokenInvariant outside the ranges above, or for a pose that is not finite.
+/// On a relief cells have their heights, and those whose centres are hidden by others are not in
+/// view (Relief::sees()): each costs a ray. All or nothing: of a cell in view others may hide a
+/// part. @throws BrokenInvariant outside the ranges above, for a pose that is not finite, or a
+/// relief of another area.
 void cells_in_image(const GridCamera& camera, const gaussian::CameraPose& pose, const Area& area,
-                    std::vector<CellInView>& out);
+                    std::vector<CellInView>& out, const Relief* relief = nullptr);
 
 /// A look from one place: which cells are in view, and where in the image they are. Reused from
 /// look to look it allocates nothing once warm.
 class CameraLook {
  public:
-  /// @throws BrokenInvariant outside the ranges above.
-  CameraLook(const GridCamera& camera, const Area& area);
+  /// A relief is not copied. @throws BrokenInvariant outside the ranges above, or for a relief of
+  /// another area.
+  CameraLook(const GridCamera& camera, const Area& area, const Relief* relief = nullptr);
 
   /// Takes a pose, believed to be off by a position (3, m, world) and a small rotation (3, rad,
   /// about the camera's axes) of this covariance (6×6), and finds the cells in view. False, with
@@ -112,10 +119,11 @@ class CameraLook {
   void judge(const SegmentedImage& image, std::vector<CellLook>& out) const;
 
  private:
-  /// A sigma point, camera and cell shifted: s·(u, v, 1) = H·(x, y, 1) for a cell's centre on the
-  /// plane.
+  /// A sigma point, camera and cell shifted: s·(u, v, 1) = H·(x, y, 1) + h·`up` for a cell's centre
+  /// at height h over the plane.
   struct Sample {
     gaussian::Matrix3 homography;
+    gaussian::Vector3 up;
     double weight;
   };
   static constexpr int dimension = 8;
@@ -123,6 +131,7 @@ class CameraLook {
 
   GridCamera camera_;
   Area area_;
+  const Relief* relief_;  ///< nothing if level
   std::array<Sample, 2 * dimension + 1> samples_;
   std::vector<CellInView> in_view_;
 };

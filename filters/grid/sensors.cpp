@@ -29,14 +29,15 @@ constexpr double widest_pyramid_rad = math::pi / 2.2;
 
 /// Sides of a pyramid around the cone. A wall touches the cone where r points away from the axis:
 /// inward normal a·sin φ − r·cos φ.
-Footprint ground_of_cone(const PresenceSensor& sensor, const CameraPose& pose, double reach_m) {
+Footprint ground_of_cone(const PresenceSensor& sensor, const CameraPose& pose, double reach_m,
+                         const Slab& heights) {
   Footprint ground = Footprint::around({pose.position_m(0), pose.position_m(1)}, reach_m);
   if (sensor.angle_max_rad > widest_pyramid_rad) return ground;
   const double s = math::sin(sensor.angle_max_rad), c = math::cos(sensor.angle_max_rad);
   for (int i = 0; i < sides; ++i) {
     const double turn = 2.0 * math::pi * i / sides;
-    const Vector3 inward(-c * math::cos(turn), -c * math::sin(turn), s);
-    ground.cut(pose.position_m, pose.axes * inward, sensor.ground_m);
+    const Vector3 inward = pose.axes * Vector3(-c * math::cos(turn), -c * math::sin(turn), s);
+    ground.cut(pose.position_m, inward, heights.before(inward));
   }
   return ground;
 }
@@ -75,7 +76,7 @@ void add(std::span<const CellLook> looks, BetaGrid& grid) {
 }
 
 void cells_in_view(const PresenceSensor& sensor, const CameraPose& pose, const Area& area,
-                   std::vector<CellInView>& out) {
+                   std::vector<CellInView>& out, const Relief* relief) {
   require_detector(sensor.detector);
   require(sensor.range_max_m > 0.0 && std::isfinite(sensor.range_max_m),
           "presence sensor: the range is positive");
@@ -84,16 +85,21 @@ void cells_in_view(const PresenceSensor& sensor, const CameraPose& pose, const A
   require(pose.position_m.allFinite() && pose.axes.allFinite(),
           "presence sensor: a pose is finite");
   out.clear();
-  const auto reach_m = reach(pose.position_m(2) - sensor.ground_m, sensor.range_max_m);
+  relief = uneven(relief, area);
+  const Slab heights = slab_of(relief, sensor.ground_m);
+  const auto reach_m = heights.reach(pose.position_m(2), sensor.range_max_m);
   if (!reach_m) return;
   const Vector3 axis = pose.axes.col(2);
-  for_each_cell(ground_of_cone(sensor, pose, *reach_m), area, [&](int cell) {
+  const Vector3 over_plane = pose.position_m - Vector3(0.0, 0.0, sensor.ground_m);
+  for_each_cell(ground_of_cone(sensor, pose, *reach_m, heights), area, [&](int cell) {
     const Point at = area.centre(cell);
-    const Vector3 to = Vector3(at.x_m, at.y_m, sensor.ground_m) - pose.position_m;
+    const double height_m = relief != nullptr ? relief->height_m(cell) : 0.0;
+    const Vector3 to = Vector3(at.x_m, at.y_m, sensor.ground_m + height_m) - pose.position_m;
     const double d = std::sqrt(to.dot(to));
     const Vector3 across = gaussian::cross_matrix(axis) * to;
     const double angle = math::atan2(std::sqrt(across.dot(across)), axis.dot(to));
     if (!(d < sensor.range_max_m) || !(angle < sensor.angle_max_rad)) return;
+    if (relief != nullptr && !relief->sees(over_plane, cell)) return;
     const double by_range = d / sensor.range_max_m, by_angle = angle / sensor.angle_max_rad;
     const double left = (1.0 - by_range * by_range) * (1.0 - by_angle * by_angle);
     out.push_back({cell, faded(sensor.detector, 1.0 - left)});

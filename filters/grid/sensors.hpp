@@ -14,6 +14,7 @@
 #include "filters/gaussian/camera.hpp"
 #include "filters/grid/bernoulli.hpp"
 #include "filters/grid/beta.hpp"
+#include "filters/grid/relief.hpp"
 
 namespace hearsay::grid {
 
@@ -66,9 +67,10 @@ struct PresenceSensor {
 /// angle_max_rad, rising. 1 − ρ = (1 − (d/d_max)²)(1 − (φ/φ_max)²): the text draws both factors
 /// (figure 4.5) and prints the first. Costs as much as there are cells in an octagon around the
 /// cone's ground (up to π/2.2 off axis; beyond in a square around the range). `out` is overwritten,
-/// its storage reused. @throws BrokenInvariant outside the ranges above.
+/// its storage reused. On a relief as by cells_in_image(). @throws BrokenInvariant outside the
+/// ranges above, or for a relief of another area.
 void cells_in_view(const PresenceSensor& sensor, const gaussian::CameraPose& pose, const Area& area,
-                   std::vector<CellInView>& out);
+                   std::vector<CellInView>& out, const Relief* relief = nullptr);
 
 /// What the answer says about each of S cells in view. Bernoulli: eq. 4.16–4.19. Beta: m = 1/S if
 /// something was detected (it is in one of them), n = 1 if not (eq. 4.32–4.33).

@@ -40,7 +40,8 @@ GridSensor::Eye GridSensor::eye_of(const Options& options, const grid::Area& are
                                       .range_max_m = options.range_max_m,
                                       .angle_max_rad = presence->angle_max_rad};
     std::vector<grid::CellInView> none;
-    grid::cells_in_view(sensor, gaussian::looking({0.0, 0.0, 0.0}, 0.0, 0.0), area, none);
+    grid::cells_in_view(sensor, gaussian::looking({0.0, 0.0, 0.0}, 0.0, 0.0), area, none,
+                        options.relief.get());
     return sensor;  // its ranges have been looked at
   }
   const Camera& camera = std::get<Camera>(options.kind);
@@ -55,15 +56,18 @@ GridSensor::Eye GridSensor::eye_of(const Options& options, const grid::Area& are
   const gaussian::Matrix errors =
       gaussian::look_covariance({camera.sigma_position_m, camera.sigma_attitude_rad, 0.0});
   return Imager{lens,
-                TruthImage(lens, options.depression_rad, area),
-                grid::CameraLook(lens, area),
+                TruthImage(lens, options.depression_rad, area, options.relief.get()),
+                grid::CameraLook(lens, area, options.relief.get()),
                 camera.sigma_position_m,
                 camera.sigma_attitude_rad,
                 errors.topLeftCorner(6, 6)};
 }
 
 GridSensor::GridSensor(const Options& options, const grid::Area& area)
-    : depression_rad_(options.depression_rad), area_(area), eye_(eye_of(options, area)) {}
+    : depression_rad_(options.depression_rad),
+      area_(area),
+      relief_(options.relief),
+      eye_(eye_of(options, area)) {}
 
 gaussian::CameraPose GridSensor::pose(const Point& place_m, double heading_rad) const {
   return gaussian::looking({place_m[0], place_m[1], place_m[2]}, heading_rad, depression_rad_);
@@ -85,7 +89,7 @@ void GridSensor::take(Imager& imager, const Point& place_m, double heading_rad,
 
 void GridSensor::take(const grid::PresenceSensor& sensor, const Point& place_m, double heading_rad,
                       std::span<const unsigned char> truth, const Draws& draws) {
-  grid::cells_in_view(sensor, pose(place_m, heading_rad), area_, in_view_);
+  grid::cells_in_view(sensor, pose(place_m, heading_rad), area_, in_view_, relief_.get());
   if (in_view_.empty()) return;
   const double u =
       Stream::uniform_at(draws.seed, Purpose("presence"), Entity::agent(draws.agent), draws.count);
@@ -110,9 +114,9 @@ std::span<const grid::CellLook> GridSensor::look(const Point& place_m, double he
 std::span<const grid::CellInView> GridSensor::view(const Point& place_m, double heading_rad) {
   const gaussian::CameraPose from = pose(place_m, heading_rad);
   if (const Imager* const imager = std::get_if<Imager>(&eye_)) {
-    grid::cells_in_image(imager->camera, from, area_, in_view_);
+    grid::cells_in_image(imager->camera, from, area_, in_view_, relief_.get());
   } else {
-    grid::cells_in_view(std::get<grid::PresenceSensor>(eye_), from, area_, in_view_);
+    grid::cells_in_view(std::get<grid::PresenceSensor>(eye_), from, area_, in_view_, relief_.get());
   }
   return in_view_;
 }

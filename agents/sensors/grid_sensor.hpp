@@ -23,6 +23,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <variant>
 #include <vector>
@@ -57,16 +58,17 @@ class GridSensor {
     double range_max_m;                      ///< > 0
     double depression_rad = 0.5 * math::pi;  ///< of its view below the horizon, 0 … π/2
     std::variant<Camera, Presence> kind;
+    std::shared_ptr<const grid::Relief> relief = nullptr;  ///< of the same area; none: level
   };
   /// @throws BrokenInvariant outside these ranges.
   GridSensor(const Options& options, const grid::Area& area);
 
-  /// The `count`-th look of `agent` from its true place (x, y, and the height over the level plane
-  /// of the cells, m), flying towards `heading_rad`; at most one a cell, in rising order. `truth`:
-  /// 1 for each cell with the thing sought, 0 for others. Empty if it sees no cell. Nothing that is
-  /// drawn depends on the place or the truth, so the same count meets the same luck. Valid until
-  /// the next call. @throws BrokenInvariant for a truth about another number of cells, a place that
-  /// is not finite.
+  /// The `count`-th look of `agent` from its true place (x, y, and the height over the plane z = 0
+  /// of level cells, m), flying towards `heading_rad`; at most one a cell, in rising order.
+  /// `truth`: 1 for each cell with the thing sought, 0 for others. Empty if it sees no cell.
+  /// Nothing that is drawn depends on the place or the truth, so the same count meets the same
+  /// luck. Valid until the next call. @throws BrokenInvariant for a truth about another number of
+  /// cells, a place that is not finite.
   std::span<const grid::CellLook> look(const Point& place_m, double heading_rad,
                                        std::span<const unsigned char> truth, std::uint64_t seed,
                                        AgentId agent, std::uint64_t count);
@@ -100,6 +102,7 @@ class GridSensor {
 
   double depression_rad_;
   grid::Area area_;
+  std::shared_ptr<const grid::Relief> relief_;  // the eye looks at it, too
   Eye eye_;
   std::vector<grid::CellInView> in_view_;
   std::vector<grid::CellLook> looks_;

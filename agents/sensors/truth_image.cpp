@@ -62,10 +62,11 @@ std::size_t pixels_of(const grid::GridCamera& camera) {
 }  // namespace
 
 TruthImage::TruthImage(const grid::GridCamera& camera, double depression_rad,
-                       const grid::Area& area)
+                       const grid::Area& area, const grid::Relief* relief)
     : camera_(camera),
       depression_rad_(depression_rad),
       area_(area),
+      relief_(grid::uneven(relief, area)),
       image_(camera.width, camera.height) {
   grid::CameraLook(camera, area);  // which looks at the ranges
   require(pixels_of(camera) <= pixels_max, "TruthImage: an image has at most 262144 pixels");
@@ -73,6 +74,7 @@ TruthImage::TruthImage(const grid::GridCamera& camera, double depression_rad,
           "TruthImage: a camera looks 0 to π/2 below the horizon");
   detected_.resize(pixels_of(camera));
   false_alarm_.resize(pixels_of(camera));
+  threshold_ = false_alarm_;
   showing_.reserve(pixels_of(camera));
 }
 
@@ -104,6 +106,26 @@ void TruthImage::set_thresholds(double z_m) {
   }
   threshold_ = false_alarm_;
   z_m_ = z_m;
+}
+
+void TruthImage::set_thresholds_over_relief(const CameraPose& pose,
+                                            std::span<const unsigned char> truth) {
+  const Vector3 over_plane = pose.position_m - Vector3(0.0, 0.0, camera_.ground_m);
+  const double range_squared = camera_.range_max_m * camera_.range_max_m;
+  std::size_t pixel = 0;
+  for (int v = 0; v < camera_.height; ++v) {
+    for (int u = 0; u < camera_.width; ++u, ++pixel) {
+      const Vector3 ray = pose.axes * sight(camera_.lens, u, v);
+      const auto met = relief_->first_met(over_plane, ray);
+      const bool around = !met && over_plane(2) > 0.0 && ray(2) < 0.0;
+      const double times = met ? met->times : around ? over_plane(2) / -ray(2) : 0.0;
+      const double rho =
+          met || around ? std::min(1.0, times * times * ray.dot(ray) / range_squared) : 1.0;
+      const grid::Detector detector = grid::faded(camera_.detector, rho);
+      const bool shows = met && truth[static_cast<std::size_t>(met->cell)] != 0;
+      threshold_[pixel] = threshold_of(shows ? detector.p_detect : detector.p_false);
+    }
+  }
 }
 
 void TruthImage::expect_cell(const CameraPose& pose, int cell) {
@@ -154,9 +176,14 @@ const grid::SegmentedImage& TruthImage::draw(const Point& place_m, double headin
   require(truth.size() == static_cast<std::size_t>(area_.cells()),
           "TruthImage: a truth is about all cells");
   const CameraPose at = pose(place_m, heading_rad);
+  image_.clear();
+  if (relief_ != nullptr) {
+    set_thresholds_over_relief(at, truth);
+    mark(draws);
+    return image_;
+  }
   set_thresholds(place_m[2]);
   expect_true_cells(at, truth);
-  image_.clear();
   mark(draws);
   for (const std::size_t pixel : showing_) threshold_[pixel] = false_alarm_[pixel];
   showing_.clear();

@@ -30,6 +30,9 @@ void describe(V& v, AreaSpec& s) {
   v.field("rows", s.rows, between(1, grid::Area::side_max), "cells along y");
   v.field("cell_m", s.cell_m, greater_than_zero(), "side of a cell");
   v.field("origin_m", s.origin_m, anything(), "the corner of least x and y: 2 coordinates");
+  v.field("heights", s.heights, anything(),
+          "CSV with x0,x1,…: the height of each cell over z = 0, m, the row of greatest y first; "
+          "relative to the scenario file, or with --set as given; default: level");
 }
 
 template <class V>

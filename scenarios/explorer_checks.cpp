@@ -5,6 +5,7 @@
 
 #include "agents/sensors/truth_image.hpp"
 #include "scenarios/explorers.hpp"
+#include "scenarios/heights.hpp"
 #include "scenarios/scenario_under_check.hpp"
 #include "sim/math/functions.hpp"
 
@@ -392,6 +393,9 @@ void ExplorerChecker::check_exploration(const ExplorationSpec& exploration,
 
 }  // namespace
 
-void check_explorers(const ScenarioUnderCheck& file) { ExplorerChecker(file).all(); }
+void check_explorers(ScenarioUnderCheck& file) {
+  ExplorerChecker(file).all();
+  take_heights(file);
+}
 
 }  // namespace hearsay

@@ -1,9 +1,12 @@
 // What a scenario says about areas, and agents that explore them with certainty grids.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "filters/grid/relief.hpp"
 
 namespace hearsay {
 
@@ -15,10 +18,12 @@ struct NumberList {
 
 /// The part of the plane that grids are about.
 struct AreaSpec {
-  int columns = 20;                           ///< 1 … 4096
-  int rows = 20;                              ///< 1 … 4096
-  double cell_m = 1.0;                        ///< > 0
-  std::vector<double> origin_m = {0.0, 0.0};  ///< the corner of least x and y
+  int columns = 20;                            ///< 1 … 4096
+  int rows = 20;                               ///< 1 … 4096
+  double cell_m = 1.0;                         ///< > 0
+  std::vector<double> origin_m = {0.0, 0.0};   ///< the corner of least x and y
+  std::optional<std::string> heights;          ///< of cells, a CSV file; none: level
+  std::shared_ptr<const grid::Relief> relief;  ///< what is in the file; the checks read it
 };
 
 /// What an explorer believes, and how it tells of it.

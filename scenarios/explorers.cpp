@@ -121,7 +121,10 @@ ExplorerAgent::Options explorer_options(const AgentSpec& spec, const WorldSpec& 
       .sensor = std::nullopt,
       .exploration = std::nullopt,
       .talk = std::nullopt};
-  if (spec.sensor.kind != "none") options.sensor = sensor_of(spec.sensor);
+  if (spec.sensor.kind != "none") {
+    options.sensor = sensor_of(spec.sensor);
+    options.sensor->relief = world.area->relief;
+  }
   options.sensor_period = Duration::seconds(spec.sensor.period_s);
   options.sensor_start = Time::at(Duration::seconds(spec.sensor.start_s));
   if (spec.sensor.end_s) options.sensor_end = Time::at(Duration::seconds(*spec.sensor.end_s));

@@ -145,6 +145,10 @@ void resolve_paths(const TomlNode& root, const std::string& file, Scenario& scen
     const TomlNode* node = root.find("world")->find("log")->find("directory");
     resolve_path(node, file, scenario.world.log->directory);
   }
+  if (scenario.world.area && scenario.world.area->heights) {
+    const TomlNode* node = root.find("world")->find("area")->find("heights");
+    resolve_path(node, file, *scenario.world.area->heights);
+  }
   if (!scenario.radio.contacts.empty()) {
     resolve_path(root.find("radio")->find("contacts"), file, scenario.radio.contacts);
   }

@@ -85,9 +85,9 @@ void check_trackers(ScenarioUnderCheck& file);
 /// Checks robots that localize themselves.
 /// @throws InputError.
 void check_localizers(const ScenarioUnderCheck& file);
-/// Checks areas, and agents that explore them.
+/// Checks areas, and agents that explore them, and reads the heights of cells.
 /// @throws InputError.
-void check_explorers(const ScenarioUnderCheck& file);
+void check_explorers(ScenarioUnderCheck& file);
 /// Checks that what rules and talk need is given, and nothing that would be without effect.
 /// @throws InputError.
 void check_talk(const ScenarioUnderCheck& file);

@@ -56,9 +56,12 @@ void for_each_cell(const Footprint& ground, const Area& area, F&& f) {
   }
   const double cell = area.cell_m();
   const Point origin = area.origin();
-  // Indices of the cells around a coordinate, brought into 0 … count before they become integers.
+  // Indices of the cells around a coordinate, from −1 to count. A polygon so large that its sides
+  // are beyond double may have NaN for a coordinate: it counts as before all cells.
   const auto index = [cell](double from_origin_m, int count) {
-    return static_cast<int>(std::clamp(std::floor(from_origin_m / cell), -1.0, count + 0.0));
+    const double at = std::floor(from_origin_m / cell);
+    if (at >= count) return count;
+    return at > -1.0 ? static_cast<int>(at) : -1;
   };
   const int last_row = std::min(index(high - origin.y_m, area.rows()), area.rows() - 1);
   for (int row = std::max(0, index(low - origin.y_m, area.rows())); row <= last_row; ++row) {

@@ -80,6 +80,15 @@ TEST(Footprint, HasTheCellsThatAllWallsLeave) {
   EXPECT_GT(found, 1000u);
 }
 
+TEST(Footprint, OneBeyondAllNumbersVisitsNoCellThatIsNotThere) {
+  const Area area({.columns = 7, .rows = 5});
+  for (const double far_m : {1e300, 1e308, static_cast<double>(INFINITY)}) {
+    Footprint ground = Footprint::around({3.0, 2.0}, far_m);
+    ground.cut({3.0, 2.0, 10.0}, {1.0, 0.5, 0.2}, 0.0);
+    for_each_cell(ground, area, [&](int cell) { EXPECT_TRUE(area.has(cell)) << far_m; });
+  }
+}
+
 TEST(Footprint, ReachesAsFarAsARangeDoes) {
   EXPECT_NEAR(*reach(3.0, 5.0), 4.0, 1e-15);
   EXPECT_FALSE(reach(5.0, 5.0));

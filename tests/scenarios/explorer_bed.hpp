@@ -8,6 +8,7 @@
 
 #include "scenarios/run.hpp"
 #include "tests/scenarios/temp_files.hpp"
+#include "tests/scenarios/with.hpp"
 
 namespace hearsay {
 
@@ -68,15 +69,6 @@ class ExplorerBed : public InTempDirectory {
     }
     values.digested = digest.all;
     return values;
-  }
-
-  /// `text` with each `from` replaced.
-  static std::string with(std::string text, const std::string& from, const std::string& to) {
-    EXPECT_NE(text.find(from), std::string::npos) << from;
-    for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
-      text.replace(at, from.size(), to);
-    }
-    return text;
   }
 
   Catalog catalog_;

@@ -9,6 +9,7 @@
 
 #include "scenarios/run.hpp"
 #include "sim/kernel/error.hpp"
+#include "tests/scenarios/with.hpp"
 #include "tests/sim/world/small_dataset.hpp"
 
 namespace hearsay {
@@ -73,14 +74,6 @@ class LogBed : public mrclam::SmallDataset {
     char text[128];
     std::snprintf(text, sizeof(text), "%.3f %d %.17g %.17g\n", time_s, barcode, range_m,
                   bearing_rad);
-    return text;
-  }
-  /// `text` with each `from` replaced.
-  static std::string with(std::string text, const std::string& from, const std::string& to) {
-    EXPECT_NE(text.find(from), std::string::npos) << from;
-    for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
-      text.replace(at, from.size(), to);
-    }
     return text;
   }
 

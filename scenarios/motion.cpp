@@ -68,7 +68,9 @@ motion::GaussMarkov gauss_markov_of(const MotionSpec& spec) {
 
 bool has_motion(const Scenario& scenario) {
   return std::any_of(scenario.agents.begin(), scenario.agents.end(),
-                     [](const AgentSpec& agent) { return agent.motion.has_value(); });
+                     [](const AgentSpec& agent) {
+                       return agent.motion.has_value() || agent.kind == "forager";
+                     });
 }
 
 namespace {

@@ -13,7 +13,7 @@
 
 namespace hearsay {
 
-/// True if an entry of [[agents]] has a motion.
+/// True if an entry of [[agents]] has a motion, or drives by itself.
 bool has_motion(const Scenario& scenario);
 
 /// The motion of agent `id`, one of the entry `spec`, that stands, or begins, at `place_m` if the

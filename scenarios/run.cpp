@@ -6,6 +6,7 @@
 #include "scenarios/channel.hpp"
 #include "scenarios/estimators.hpp"
 #include "scenarios/explorers.hpp"
+#include "scenarios/foragers.hpp"
 #include "scenarios/localizers.hpp"
 #include "scenarios/logs.hpp"
 #include "scenarios/network.hpp"
@@ -103,30 +104,48 @@ Run::Run(std::shared_ptr<const PreparedScenario> prepared, const Catalog& catalo
   simulation_.name_of_agent = [this](AgentId id) {
     return id >= 0 ? prepared_->names[static_cast<std::size_t>(id)] : std::string("central");
   };
+  robots_.assign(prepared_->specs.size(), -1);
+  if (has_foragers(prepared_->scenario)) {
+    robot_world_ = make_robot_world(prepared_->scenario, simulation_);
+    int robot = 0;
+    for (std::size_t i = 0; i < robots_.size(); ++i) {
+      if (prepared_->specs[i]->kind == "forager") robots_[i] = robot++;
+    }
+  }
   build_radio(options.seed);
   build_agents(catalog);
 }
 
 Run::~Run() = default;
 
+AgentPlaces Run::places_of_run() const {
+  AgentPlaces places = prepared_->places;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (robots_[i] < 0) continue;
+    const drive::Pose& pose = robot_world_->pose(robots_[i]);
+    places[i] = {pose.x_m, pose.y_m};
+  }
+  return places;
+}
+
 void Run::build_radio(std::uint64_t seed) {
   const Scenario& scenario = prepared_->scenario;
   const RadioOptions options = radio_options(scenario);
   const auto agents = static_cast<int>(prepared_->specs.size());
-  Reach reach{.topology = Topology::edges(agents, {}),
-              .positions_m = positions_of(prepared_->places)};
+  const AgentPlaces places = places_of_run();
+  Reach reach{.topology = Topology::edges(agents, {}), .positions_m = positions_of(places)};
   if (has_motion(scenario)) {
     reach.by_place = scenario.radio.topology == "disk" || scenario.radio.topology == "by-position";
     // Where the graph says who hears whom, places are asked for one by one.
     const double reach_m = reach.by_place ? options.propagation.reach_m() : 1e6;
-    paths_ = std::make_unique<AgentPaths>(scenario, prepared_->places, seed);
+    paths_ = std::make_unique<AgentPaths>(scenario, places, seed);
     places_ = std::make_unique<Places>(agents, reach_m, 0.25 * reach_m);
     movement_ = std::make_unique<Movement>(simulation_, *places_, *paths_);
     reach.places = places_.get();
   }
   if (!reach.by_place) {
     LinkPlan plan =
-        prepared_->links ? *prepared_->links : make_link_plan(scenario, prepared_->places, seed);
+        prepared_->links ? *prepared_->links : make_link_plan(scenario, places, seed);
     reach.topology = std::move(plan.topology);
     reach.changes = std::move(plan.changes);
   }
@@ -164,10 +183,15 @@ void Run::build_agents(const Catalog& catalog) {
     grid_witness_ = make_grid_witness(scenario, simulation_,
                                       [this](AgentId id) { return radio_->position(id); });
   }
+  if (robot_world_) {
+    record.agent(central_agent, "central", "central");
+    trail_witness_ = make_trail_witness(scenario, simulation_, *robot_world_);
+  }
   if (has_localizers(scenario)) pose_witness_ = make_pose_witness(*prepared_, simulation_);
   for (std::size_t i = 0; i < prepared_->specs.size(); ++i) {
     const AgentSpec& spec = *prepared_->specs[i];
     const auto id = static_cast<AgentId>(i);
+    const bool steers = robots_[i] >= 0 || (spec.motion && spec.motion->kind == "steered");
     record.agent(id, prepared_->names[i], spec.kind);
     gossips_.push_back(make_gossip(scenario, spec, id, simulation_, *radio_));
     contexts_.push_back(std::make_unique<Context>(
@@ -179,7 +203,7 @@ void Run::build_agents(const Catalog& catalog) {
         Context::Service{
             .acknowledged = spec.talk.service == "acknowledged",
             .gossip = gossips_.back().get(),
-            .steers = spec.motion && spec.motion->kind == "steered" ? movement_.get() : nullptr}));
+            .steers = steers ? movement_.get() : nullptr}));
     agents_.push_back(make_agent(id, catalog));
     if (gossips_.back()) {
       gossips_.back()->attach(*agents_.back());
@@ -202,6 +226,7 @@ std::unique_ptr<Agent> Run::make_agent(AgentId id, const Catalog& catalog) {
   if (spec.kind == "tracker") return make_tracker(id);
   if (spec.kind == "localizer") return make_localizer(id);
   if (spec.kind == "explorer") return make_explorer(id);
+  if (spec.kind == "forager") return make_forager(id);
   std::optional<SourceTraffic> traffic;
   if (spec.traffic) traffic = traffic_of(*spec.traffic, id, simulation_.seed());
   return std::make_unique<SourceAgent>(*contexts_[i], traffic);
@@ -263,6 +288,15 @@ std::unique_ptr<Agent> Run::make_explorer(AgentId id) {
   return agent;
 }
 
+std::unique_ptr<Agent> Run::make_forager(AgentId id) {
+  const auto i = static_cast<std::size_t>(id);
+  const AgentSpec& spec = *prepared_->specs[i];
+  ForagerAgent::Options options =
+      forager_options(spec, prepared_->scenario, id, robots_[i], simulation_.seed());
+  if (spec.talk.policy == "periodic") options.talk = talk_of(id);
+  return std::make_unique<ForagerAgent>(*contexts_[i], *robot_world_, *trail_witness_, options);
+}
+
 PeriodicTalk Run::talk_of(AgentId id) const {
   const TalkSpec& talk = prepared_->specs[static_cast<std::size_t>(id)]->talk;
   const Duration period = Duration::seconds(talk.period_s);
@@ -279,6 +313,8 @@ RunEnd Run::run() {
     if (track_witness_) track_witness_->start();
     if (pose_witness_) pose_witness_->start();
     if (grid_witness_) grid_witness_->start();
+    if (robot_world_) robot_world_->start();
+    if (trail_witness_) trail_witness_->start();
     if (life_) life_->start();
     for (std::size_t i = 0; i < agents_.size(); ++i) {
       simulation_.acting_for(static_cast<AgentId>(i));
@@ -312,6 +348,8 @@ void Run::keep_record_only() {
   track_witness_.reset();
   pose_witness_.reset();
   grid_witness_.reset();
+  trail_witness_.reset();
+  robot_world_.reset();
 }
 
 void Run::leave_final_values() {
@@ -320,6 +358,7 @@ void Run::leave_final_values() {
   if (track_witness_) track_witness_->finish();
   if (pose_witness_) pose_witness_->finish();
   if (grid_witness_) grid_witness_->finish();
+  if (trail_witness_) trail_witness_->finish();
   radio_->finish();
   record_radio();
   record_links();

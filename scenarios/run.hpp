@@ -12,6 +12,7 @@
 
 #include "agents/catalog.hpp"
 #include "agents/estimator_agent.hpp"
+#include "agents/forager_agent.hpp"
 #include "agents/grids/grid_witness.hpp"
 #include "agents/localizer_agent.hpp"
 #include "agents/pose_witness.hpp"
@@ -84,6 +85,9 @@ class Run {
   std::unique_ptr<Agent> make_tracker(AgentId id);
   std::unique_ptr<Agent> make_localizer(AgentId id);
   std::unique_ptr<Agent> make_explorer(AgentId id);
+  std::unique_ptr<Agent> make_forager(AgentId id);
+  /// Where agents begin in this run; robots are on the floor.
+  AgentPlaces places_of_run() const;
   PeriodicTalk talk_of(AgentId id) const;
   void leave_final_values();
   void record_radio();
@@ -97,6 +101,9 @@ class Run {
   std::unique_ptr<TrackWitness> track_witness_;  // null without trackers
   std::unique_ptr<PoseWitness> pose_witness_;    // null without localizers
   std::unique_ptr<GridWitness> grid_witness_;    // null without explorers
+  std::unique_ptr<RobotWorld> robot_world_;      // null without foragers, and so the next two
+  std::unique_ptr<TrailWitness> trail_witness_;
+  std::vector<int> robots_;                      // by agent: its number on the floor, or −1
   std::unique_ptr<Witness> witness_;             // owns the riders of packets in flight
   std::unique_ptr<AgentPaths> paths_;            // null if nobody moves, and so the next two
   std::unique_ptr<Places> places_;

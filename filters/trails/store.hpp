@@ -105,6 +105,8 @@ class TrailStore {
   /// By event, rising.
   std::span<const Place> places() const { return places_; }
   const Place* place(EventId event) const;
+  /// How much of its life a crumb has behind it, 0 … 1, at the time of the last call.
+  double worn(const Crumb& crumb) const;
   const TrailCounts& counts() const { return counts_; }
   /// Calls f(crumb) for all, in the order in which they were learned.
   template <typename F>

@@ -58,6 +58,9 @@ class Odometer {
   /// It drove so for `dt_s` ≥ 0.
   void drove(const Command& command, double dt_s);
 
+  /// Somebody tells it where it is, in its own frame.
+  void set(const Pose& pose) { pose_ = pose; }
+
   const Pose& pose() const { return pose_; }
   /// b of its forward and turn speeds.
   double forward_bias() const { return forward_bias_; }

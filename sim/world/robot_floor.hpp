@@ -45,6 +45,9 @@ class RobotFloor {
   /// is not finite.
   Step drive(int robot, const drive::Command& wanted, double dt_s);
 
+  /// Whether one more robot, or `except` itself, can stand there.
+  bool has_room(const drive::Pose& pose, int except = -1);
+
   /// Carries a robot elsewhere: somebody lifts it. False, and it stays, if there is no room there.
   bool carry(int robot, const drive::Pose& pose);
 
@@ -63,7 +66,6 @@ class RobotFloor {
   };
   static Point place(const drive::Pose& pose) { return {pose.x_m, pose.y_m}; }
   const Robot& at(int robot) const;
-  bool has_room(const drive::Pose& pose, int except);
   int cell_of(Point p) const;
   void file(int robot);
   void take_out(int robot);

@@ -1,0 +1,121 @@
+#include "agents/robots/robot_world.hpp"
+
+#include <utility>
+
+#include "sim/kernel/error.hpp"
+#include "sim/math/functions.hpp"
+
+namespace hearsay {
+namespace {
+
+std::vector<plan::Rectangle> areas_of(const std::vector<RobotWorld::Barrier>& barriers) {
+  std::vector<plan::Rectangle> areas;
+  for (const RobotWorld::Barrier& barrier : barriers) areas.push_back(barrier.area);
+  return areas;
+}
+
+// Ways are looked for on a grid that is fine enough for doors.
+constexpr double way_spacing_m = 0.125;
+
+}  // namespace
+
+RobotWorld::RobotWorld(Simulation& simulation, Options options)
+    : simulation_(simulation),
+      options_(std::move(options)),
+      walls_(*options_.plan, areas_of(options_.barriers)),
+      floor_(walls_, options_.floor) {}
+
+const RobotWorld::Source& RobotWorld::source(trails::EventId event) const {
+  require(event < options_.sources.size(), "robot world: there is no such event");
+  return options_.sources[event];
+}
+
+std::optional<drive::Pose> RobotWorld::room(const Start& start, Stream& draws, int robot) {
+  for (int i = 0; i < options_.tries; ++i) {
+    drive::Pose pose;
+    // In the square around the start, those in its corners not taken: even over the disc.
+    const double reach_m = start.scatter_m;
+    const double u = draws.uniform(), v = draws.uniform(), w = draws.uniform();
+    pose.heading_rad = start.heading_rad.value_or(math::wrap_angle(2.0 * math::pi * w));
+    if (!start.at) {
+      pose.x_m = u * walls_.width_m();
+      pose.y_m = v * walls_.height_m();
+    } else {
+      const double dx = (2.0 * u - 1.0) * reach_m, dy = (2.0 * v - 1.0) * reach_m;
+      if (dx * dx + dy * dy > reach_m * reach_m) continue;
+      pose.x_m = start.at->x_m + dx;
+      pose.y_m = start.at->y_m + dy;
+    }
+    if (!floor_.has_room(pose, robot)) continue;
+    const bool beyond_a_wall =
+        start.at && advance(walls_, {pose.x_m, pose.y_m}, *start.at, plan::radius_min_m).blocked;
+    if (!beyond_a_wall) return pose;
+  }
+  return std::nullopt;
+}
+
+int RobotWorld::add(const Start& start, Stream draws) {
+  const auto pose = room(start, draws, -1);
+  if (pose) return floor_.add(*pose);
+  throw InputError("there is no room for robot " + std::to_string(floor_.robots()) + " of radius " +
+                   std::to_string(floor_.radius_m()) + " m where it should start; give a larger "
+                   "agents.robot.scatter_m");
+}
+
+bool RobotWorld::carry(int robot, const Start& start, Stream draws) {
+  const auto pose = room(start, draws, robot);
+  return pose && floor_.carry(robot, *pose);
+}
+
+void RobotWorld::report(const char* kind, const std::string& detail) {
+  changed_ = simulation_.now();
+  simulation_.record().event(simulation_.now(), no_agent, kind, detail);
+}
+
+void RobotWorld::start() {
+  for (std::size_t i = 0; i < options_.barriers.size(); ++i) {
+    const Barrier& barrier = options_.barriers[i];
+    simulation_.schedule(barrier.from, Phase::world, [this, i] {
+      walls_.block(i);
+      report("barrier", "up " + std::to_string(i));
+    });
+    if (barrier.until == Time::never()) continue;
+    simulation_.schedule(barrier.until, Phase::world, [this, i] {
+      walls_.unblock(i);
+      report("barrier", "down " + std::to_string(i));
+    });
+  }
+  for (std::size_t i = 0; i < options_.sources.size(); ++i) {
+    for (std::size_t m = 0; m < options_.sources[i].moves.size(); ++m) {
+      simulation_.schedule(options_.sources[i].moves[m].at, Phase::world, [this, i, m] {
+        move(i, m);
+      });
+    }
+  }
+}
+
+void RobotWorld::move(std::size_t source, std::size_t move) {
+  Source& moved = options_.sources[source];
+  moved.at = moved.moves[move].to;
+  report("source", moved.name + " moves to " + moved.moves[move].place);
+}
+
+bool RobotWorld::happens(int robot, trails::EventId event) {
+  require(event < options_.sources.size(), "robot world: there is no such event");
+  Source& there = options_.sources[event];
+  const drive::Pose& here = pose(robot);
+  const double dx = here.x_m - there.at.x_m, dy = here.y_m - there.at.y_m;
+  if (dx * dx + dy * dy > there.radius_m * there.radius_m) return false;
+  if (!there.units) return true;
+  if (*there.units == 0) return false;
+  if (--*there.units == 0) report("source", there.name + " is dry");
+  return true;
+}
+
+std::optional<plan::Path> RobotWorld::way(int robot, trails::EventId event) const {
+  const drive::Pose& here = pose(robot);
+  return plan::shortest_path(walls_, {here.x_m, here.y_m}, source(event).at,
+                             options_.floor.radius_m, way_spacing_m);
+}
+
+}  // namespace hearsay

@@ -1,0 +1,31 @@
+// Robots that lay and follow trails, and the floor they drive on.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "agents/forager_agent.hpp"
+#include "scenarios/scenario.hpp"
+
+namespace hearsay {
+
+/// True if some agent forages.
+bool has_foragers(const Scenario& scenario);
+
+/// The names of all events that robots are after, by trails::EventId: the sources, then places that
+/// are no sources, in the order of the tasks.
+std::vector<std::string> events_of(const Scenario& scenario);
+
+/// The floor of a run, with all robots on it, in the order of their agents.
+/// @throws InputError where there is no room for a robot.
+std::unique_ptr<RobotWorld> make_robot_world(const Scenario& scenario, Simulation& simulation);
+
+std::unique_ptr<TrailWitness> make_trail_witness(const Scenario& scenario, Simulation& simulation,
+                                                 const RobotWorld& world);
+
+/// All but when it talks. `robot`: its number on the floor.
+ForagerAgent::Options forager_options(const AgentSpec& spec, const Scenario& scenario, AgentId id,
+                                      int robot, std::uint64_t seed);
+
+}  // namespace hearsay

@@ -1,5 +1,5 @@
 // The kinds of agent that scenario files may name, besides the built-in "estimator",
-// "tracker", "localizer", "explorer" and "source": what a user's own program adds.
+// "tracker", "localizer", "explorer", "forager" and "source": what a user's own program adds.
 #pragma once
 
 #include <functional>
@@ -32,7 +32,7 @@ class Catalog {
   Catalog& add_agent(const std::string& name, const std::string& meaning) {
     AgentKind kind{meaning, [](Context& context) { return std::make_unique<T>(context); }};
     const bool built_in = name == "estimator" || name == "tracker" || name == "localizer" ||
-                          name == "explorer" || name == "source";
+                          name == "explorer" || name == "forager" || name == "source";
     if (built_in || !agents_.emplace(name, std::move(kind)).second) {
       throw std::invalid_argument("agent kind '" + name + "' exists already");
     }

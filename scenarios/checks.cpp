@@ -19,6 +19,7 @@ class Checker {
   void all() {
     check_agents();
     check_world();
+    check_foragers(file_);
     for (std::size_t i = 0; i < s_.agents.size(); ++i) {
       check_agent(s_.agents[i], agents_[i]);
     }

@@ -14,6 +14,7 @@
 
 #include "filters/gaussian/fusion.hpp"
 #include "scenarios/describe_explorer.hpp"
+#include "scenarios/describe_forager.hpp"
 #include "scenarios/describe_localizer.hpp"
 #include "scenarios/describe_motion.hpp"
 #include "scenarios/describe_radio.hpp"
@@ -63,6 +64,8 @@ void describe(V& v, WorldSpec& s) {
           "still");
   v.table("log", s.log, "a recorded data set instead of targets and synthetic sensors");
   v.table("area", s.area, "the cells that agents of kind explorer have grids of");
+  v.table("plan", s.plan, "the floor that agents of kind forager drive on");
+  v.table("sources", s.sources, "what foragers fetch or leave at places of the plan");
 }
 
 template <class V>
@@ -151,10 +154,13 @@ void describe(V& v, EstimatorSpec& s) {
 template <class V>
 void describe(V& v, TalkSpec& s) {
   v.field("policy", s.policy,
-          one_of({"periodic", "on-update", "event-triggered", "adaptive", "never"}),
+          one_of({"periodic", "on-update", "event-triggered", "adaptive", "never", "at-once",
+                  "at-event"}),
           "at every period; at those before which it measured; at those at which it has news (not "
-          "with trajectory-gaussian); less often while its radio is busy; never. Trackers and "
-          "localizers: \"periodic\" and \"never\" alone");
+          "with trajectory-gaussian); less often while its radio is busy; never. Trackers, "
+          "localizers and explorers: \"periodic\" and \"never\" alone. Foragers: these (what "
+          "changed since, at every period), \"at-once\" (each crumb as it is laid), \"at-event\" "
+          "(all news whenever an event is reached)");
   v.field("period_s", s.period_s, time_span(false), "time between sendings");
   v.field("phase", s.phase, one_of({"random", "staggered", "together"}),
           "first sending: at random, agent i of n at i·period/n, or all at once");
@@ -206,6 +212,9 @@ void describe(V& v, AgentSpec& s) {
   v.table("grid", s.grid, "what an agent of kind explorer believes of the area");
   v.table("exploration", s.exploration,
           "where an explorer with motion.kind = \"steered\" goes; default: as its motion says");
+  v.table("robot", s.robot, "the body of an agent of kind forager, and where it begins");
+  v.table("task", s.task, "what a forager is after");
+  v.table("trails", s.trails, "how a forager uses trails");
   v.table("talk", s.talk, "what it says when");
   v.table("traffic", s.traffic, "what a source sends; default: nothing, it listens");
   v.field("parameters", s.parameters, anything(), "numbers for agents of a user's program");
@@ -231,6 +240,8 @@ void describe(V& v, RecordSpec& s) {
   v.field("links", s.links, one_of({"on", "off"}), "how many packets met which fate on each link");
   v.field("ledger", s.ledger, one_of({"on", "off"}), "how often measurements were counted");
   v.field("grids", s.grids, one_of({"on", "off"}), "every cell of every grid at the end");
+  v.field("crumbs", s.crumbs, one_of({"on", "off"}),
+          "an event for each crumb that a forager lays: where it truly was");
 }
 
 template <class V>

@@ -149,6 +149,10 @@ void resolve_paths(const TomlNode& root, const std::string& file, Scenario& scen
     const TomlNode* node = root.find("world")->find("area")->find("heights");
     resolve_path(node, file, *scenario.world.area->heights);
   }
+  if (scenario.world.plan) {
+    const TomlNode* node = root.find("world")->find("plan")->find("file");
+    resolve_path(node, file, scenario.world.plan->file);
+  }
   if (!scenario.radio.contacts.empty()) {
     resolve_path(root.find("radio")->find("contacts"), file, scenario.radio.contacts);
   }

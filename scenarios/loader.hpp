@@ -13,8 +13,8 @@ namespace hearsay {
 
 /// Names a user's program adds to what scenario files may say.
 struct KnownNames {
-  std::vector<std::string> agent_kinds = {"estimator", "tracker", "localizer", "explorer",
-                                          "source"};
+  std::vector<std::string> agent_kinds = {"estimator", "tracker", "localizer",
+                                          "explorer",  "forager", "source"};
   std::vector<std::string> metrics;  ///< that claims and record.series may name; empty: not checked
 };
 

@@ -303,10 +303,14 @@ std::vector<KeyInfo> parameters(const RadioModelInfo& model) {
 }
 
 std::string unit_of(std::string_view key) {
-  constexpr std::array<std::pair<std::string_view, const char*>, 15> units = {
+  constexpr std::array<std::pair<std::string_view, const char*>, 19> units = {
       {{"_m_per_s", "m/s"},
+       {"_rad_per_s", "rad/s"},
        {"_m_per_sqrt_s", "m/√s"},
+       {"_m_per_sqrt_m", "m/√m"},
        {"_rad_per_sqrt_s", "rad/√s"},
+       {"_rad_per_sqrt_m", "rad/√m"},
+       {"_rad_per_sqrt_rad", "rad/√rad"},
        {"_m2_per_s3", "m²/s³"},
        {"_nats", "nats"},
        {"_bps", "bit/s"},

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "scenarios/explorer_spec.hpp"
+#include "scenarios/forager_spec.hpp"
 #include "scenarios/localizer_spec.hpp"
 #include "scenarios/motion_spec.hpp"
 #include "scenarios/radio_spec.hpp"
@@ -39,7 +40,9 @@ struct WorldSpec {
   /// still
   std::optional<double> step_s;
   std::optional<LogSpec> log;
-  std::optional<AreaSpec> area;  ///< what explorers explore
+  std::optional<AreaSpec> area;     ///< what explorers explore
+  std::optional<PlanSpec> plan;     ///< the floor that foragers drive on
+  std::vector<SourceSpec> sources;  ///< what there is at places of the plan
 };
 
 struct CircleSpec {
@@ -96,7 +99,8 @@ struct EstimatorSpec {
 };
 
 struct TalkSpec {
-  /// "periodic" | "on-update" | "event-triggered" | "adaptive" | "never"
+  /// "periodic" | "on-update" | "event-triggered" | "adaptive" | "never"; of foragers, who know
+  /// "periodic" and "never", too: "at-once" (each crumb as it is laid) | "at-event" (all news)
   std::string policy = "periodic";
   double period_s = 5.0;          ///< > 0
   std::string phase = "random";   ///< "random" | "staggered" | "together"
@@ -123,7 +127,7 @@ struct TrafficSpec {
 
 struct AgentSpec {
   std::string name;  ///< default "<kind><i>"; with count > 1 a number is appended
-  /// "estimator" | "tracker" | "localizer" | "explorer" | "source", or a program's own
+  /// "estimator" | "tracker" | "localizer" | "explorer" | "forager" | "source", or a program's own
   std::string kind = "estimator";
   int count = 1;                                  ///< 1 … 1e6
   std::optional<std::vector<double>> position_m;  ///< 2 coordinates
@@ -135,6 +139,9 @@ struct AgentSpec {
   LocalizerSpec localizer;
   GridSpec grid;
   std::optional<ExplorationSpec> exploration;  ///< none: it goes as its motion says
+  std::optional<RobotSpec> robot;              ///< of a forager, as the next two: needed
+  std::optional<TaskSpec> task;
+  std::optional<TrailsSpec> trails;
   TalkSpec talk;
   std::optional<TrafficSpec> traffic;        ///< of a source; none: it listens
   std::map<std::string, double> parameters;  ///< free, for agents of a user's program
@@ -157,6 +164,7 @@ struct RecordSpec {
   std::string links = "on";                ///< "on" | "off"
   std::string ledger = "on";               ///< "on" | "off"
   std::string grids = "off";               ///< "on": all cells of all grids at the end
+  std::string crumbs = "off";              ///< "on": an event for each crumb that foragers lay
 };
 
 struct Scenario {

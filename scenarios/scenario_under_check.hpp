@@ -51,7 +51,9 @@ class ScenarioUnderCheck {
 /// True if the file says where such an agent stands, or begins.
 inline bool placed(const AgentSpec& agent) { return agent.position_m || agent.circle; }
 /// True if it says where the agent is.
-inline bool has_place(const AgentSpec& agent) { return placed(agent) || agent.motion; }
+inline bool has_place(const AgentSpec& agent) {
+  return placed(agent) || agent.motion || agent.robot;
+}
 
 /// The first one whose name an earlier one has, too.
 std::optional<std::size_t> first_duplicate(const std::vector<std::string>& names);
@@ -88,6 +90,9 @@ void check_localizers(const ScenarioUnderCheck& file);
 /// Checks areas, and agents that explore them, and reads the heights of cells.
 /// @throws InputError.
 void check_explorers(ScenarioUnderCheck& file);
+/// Reads the plan, and checks it and the agents that forage on it.
+/// @throws InputError.
+void check_foragers(ScenarioUnderCheck& file);
 /// Checks that what rules and talk need is given, and nothing that would be without effect.
 /// @throws InputError.
 void check_talk(const ScenarioUnderCheck& file);

@@ -67,6 +67,10 @@ TEST(RadioModels, TellUnitsByTheEndsOfKeys) {
   EXPECT_EQ(unit_of("radio.latency_s"), "s");
   EXPECT_EQ(unit_of("radio.propagation_m_per_s"), "m/s");
   EXPECT_EQ(unit_of("agents.localizer.turn_rad_per_sqrt_s"), "rad/√s");
+  EXPECT_EQ(unit_of("agents.robot.turn_rad_per_s"), "rad/s");
+  EXPECT_EQ(unit_of("agents.robot.forward_m_per_sqrt_m"), "m/√m");
+  EXPECT_EQ(unit_of("agents.robot.turn_rad_per_sqrt_m"), "rad/√m");
+  EXPECT_EQ(unit_of("agents.robot.turn_rad_per_sqrt_rad"), "rad/√rad");
   EXPECT_EQ(unit_of("agents.estimator.acceleration_psd_m2_per_s3"), "m²/s³");
   EXPECT_EQ(unit_of("radio.rate_bps"), "bit/s");
   EXPECT_EQ(unit_of("radio.header_bytes"), "bytes");

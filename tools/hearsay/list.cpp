@@ -139,6 +139,10 @@ Json agents(const Catalog& catalog) {
                  {"meaning",
                   "flies over an area with a certainty grid, goes where a look tells most, tells "
                   "others what it believes and fuses what it hears"}});
+  out.push_back({{"name", "forager"},
+                 {"meaning",
+                  "drives on a floor from event to event, lays trails of crumbs, tells others of "
+                  "them and follows those it hears of"}});
   out.push_back({{"name", "source"}, {"meaning", "makes traffic, counts what it hears"}});
   for (const auto& [name, kind] : catalog.agents()) {
     out.push_back({{"name", name}, {"meaning", kind.meaning}});

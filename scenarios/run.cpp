@@ -10,6 +10,7 @@
 #include "scenarios/localizers.hpp"
 #include "scenarios/logs.hpp"
 #include "scenarios/network.hpp"
+#include "scenarios/radio_record.hpp"
 #include "scenarios/sensors.hpp"
 #include "scenarios/targets.hpp"
 #include "scenarios/trackers.hpp"
@@ -144,8 +145,7 @@ void Run::build_radio(std::uint64_t seed) {
     reach.places = places_.get();
   }
   if (!reach.by_place) {
-    LinkPlan plan =
-        prepared_->links ? *prepared_->links : make_link_plan(scenario, places, seed);
+    LinkPlan plan = prepared_->links ? *prepared_->links : make_link_plan(scenario, places, seed);
     reach.topology = std::move(plan.topology);
     reach.changes = std::move(plan.changes);
   }
@@ -200,10 +200,9 @@ void Run::build_agents(const Catalog& catalog) {
                           .name = prepared_->names[i],
                           .kind = spec.kind,
                           .parameters = spec.parameters},
-        Context::Service{
-            .acknowledged = spec.talk.service == "acknowledged",
-            .gossip = gossips_.back().get(),
-            .steers = steers ? movement_.get() : nullptr}));
+        Context::Service{.acknowledged = spec.talk.service == "acknowledged",
+                         .gossip = gossips_.back().get(),
+                         .steers = steers ? movement_.get() : nullptr}));
     agents_.push_back(make_agent(id, catalog));
     if (gossips_.back()) {
       gossips_.back()->attach(*agents_.back());
@@ -360,44 +359,8 @@ void Run::leave_final_values() {
   if (grid_witness_) grid_witness_->finish();
   if (trail_witness_) trail_witness_->finish();
   radio_->finish();
-  record_radio();
-  record_links();
+  record_radio(simulation_.record(), *radio_, gossips_);
   if (prepared_->log) record_log(*prepared_, simulation_.record());
-}
-
-void Run::record_radio() {
-  Record& record = simulation_.record();
-  for (AgentId id = 0; id < static_cast<AgentId>(agents_.size()); ++id) {
-    const SenderCounts& counts = radio_->counts(id);
-    const auto scalar = [&](const std::string& name, double value) {
-      record.scalar(id, record.name(name), value);
-    };
-    scalar("packets", static_cast<double>(counts.packets));
-    scalar("bytes_sent", static_cast<double>(counts.bytes_sent));
-    scalar("air_time_s", counts.air_time.seconds());
-    scalar("queue_delay_mean_s", counts.queue_delay.seconds() / static_cast<double>(counts.begun));
-    scalar("delivery_ratio",
-           static_cast<double>(counts.fates[0]) / static_cast<double>(counts.expected));
-    scalar("frames", static_cast<double>(counts.frames));
-    scalar("acknowledgements", static_cast<double>(counts.acknowledgements));
-    for (int f = 0; f < fate_count; ++f) {
-      scalar(std::string("packets_") + to_string(static_cast<Fate>(f)),
-             static_cast<double>(counts.fates[static_cast<std::size_t>(f)]));
-    }
-    const Gossip* const gossip = gossips_[static_cast<std::size_t>(id)].get();
-    if (gossip) record_gossip(record, id, gossip->counts());
-  }
-}
-
-void Run::record_links() {
-  Record& record = simulation_.record();
-  radio_->visit_links([&](AgentId from, AgentId to, const FateCounts& counts) {
-    for (int f = 0; f < fate_count; ++f) {
-      const std::uint64_t packets = counts[static_cast<std::size_t>(f)];
-      if (packets == 0) continue;
-      record.link({from, to, record.name(to_string(static_cast<Fate>(f))), packets});
-    }
-  });
 }
 
 }  // namespace hearsay

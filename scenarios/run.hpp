@@ -90,8 +90,6 @@ class Run {
   AgentPlaces places_of_run() const;
   PeriodicTalk talk_of(AgentId id) const;
   void leave_final_values();
-  void record_radio();
-  void record_links();
 
   // The order matters: what is below is destroyed first and may use what is above.
   std::shared_ptr<const PreparedScenario> prepared_;
@@ -103,9 +101,9 @@ class Run {
   std::unique_ptr<GridWitness> grid_witness_;    // null without explorers
   std::unique_ptr<RobotWorld> robot_world_;      // null without foragers, and so the next two
   std::unique_ptr<TrailWitness> trail_witness_;
-  std::vector<int> robots_;                      // by agent: its number on the floor, or −1
-  std::unique_ptr<Witness> witness_;             // owns the riders of packets in flight
-  std::unique_ptr<AgentPaths> paths_;            // null if nobody moves, and so the next two
+  std::vector<int> robots_;            // by agent: its number on the floor, or −1
+  std::unique_ptr<Witness> witness_;   // owns the riders of packets in flight
+  std::unique_ptr<AgentPaths> paths_;  // null if nobody moves, and so the next two
   std::unique_ptr<Places> places_;
   std::unique_ptr<Movement> movement_;
   std::unique_ptr<Radio> radio_;

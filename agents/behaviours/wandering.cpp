@@ -1,0 +1,185 @@
+#include "agents/behaviours/wandering.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/kernel/error.hpp"
+#include "sim/math/functions.hpp"
+
+namespace hearsay {
+namespace {
+
+/// A heading that can be kept only by turning away by more than this is blocked.
+constexpr double blocked_rad = 0.8;
+/// Walls are looked for from a little behind the side on.
+constexpr double side_rad = 1.9;
+/// What is farther behind is where it came from.
+constexpr double ahead_rad = 2.0;
+constexpr double wide_rad = 1.4;  ///< an opening that is no corridor any more
+constexpr double between_branches_m = 1.5;
+
+double way(const drive::Pose& a, const drive::Pose& b) {
+  const double dx = a.x_m - b.x_m, dy = a.y_m - b.y_m;
+  return std::sqrt(dx * dx + dy * dy);
+}
+
+}  // namespace
+
+Wandering::Wandering(const Options& options) : options_(options) {
+  for (const double x : {options.clearance_m, options.look_ahead_m, options.range_m, options.hold_s,
+                         options.follow_s}) {
+    require(x > 0.0 && std::isfinite(x), "wandering: distances and times above 0, finite");
+  }
+}
+
+void Wandering::restart() {
+  heading_rad_.reset();
+  side_ = Side::none;
+  side_chosen_ = false;
+  branches_ = 0;
+}
+
+double Wandering::bearing(FreeDirections& eyes, const drive::Pose& odometry, double now_s,
+                          Stream& draws) {
+  switch (options_.manner) {
+    case Manner::wall:
+      return follow(eyes, odometry, now_s, draws);
+    case Manner::corridor:
+      return along(eyes, odometry, now_s, draws);
+    case Manner::roam:
+      break;
+  }
+  return roam(eyes, odometry, now_s, draws);
+}
+
+double Wandering::roam(FreeDirections& eyes, const drive::Pose& odometry, double now_s,
+                       Stream& draws) {
+  eyes.block(options_.clearance_m, options_.look_ahead_m);
+  bool again = !heading_rad_ || now_s >= until_s_;
+  if (!again) {
+    const double bearing = math::wrap_angle(*heading_rad_ - odometry.heading_rad);
+    const auto nearest = eyes.nearest({bearing, std::nullopt});
+    again = nearest && std::fabs(math::wrap_angle(nearest->bearing_rad - bearing)) > blocked_rad;
+  }
+  if (again) {
+    const double drawn = eyes.any(draws).value_or(draws.uniform(-math::pi, math::pi));
+    heading_rad_ = math::wrap_angle(odometry.heading_rad + drawn);
+    until_s_ = now_s + draws.exponential(1.0 / options_.hold_s);
+  }
+  return math::wrap_angle(*heading_rad_ - odometry.heading_rad);
+}
+
+bool Wandering::beside(const FreeDirections& eyes) const {
+  const double within = options_.clearance_m + 0.5;
+  const int middle = FreeDirections::sector(side_ == Side::left ? 0.5 * math::pi : -0.5 * math::pi);
+  constexpr int spread = FreeDirections::sectors / 6;
+  for (int i = -spread; i <= spread; ++i) {
+    const int s = (middle + i + FreeDirections::sectors) % FreeDirections::sectors;
+    if (eyes.open_m(s) < within) return true;
+  }
+  return false;
+}
+
+double Wandering::follow(FreeDirections& eyes, const drive::Pose& odometry, double now_s,
+                         Stream& draws) {
+  if (!side_chosen_ || now_s >= side_until_s_) {
+    // In turn: a wall at one of the sides, and a while in the open.
+    const bool open = side_chosen_ && side_ != Side::none;
+    const bool left = draws.bernoulli(0.5);
+    side_ = open ? Side::none : left ? Side::left : Side::right;
+    side_until_s_ = now_s + draws.exponential(1.0 / (open ? options_.hold_s : options_.follow_s));
+    side_chosen_ = true;
+    wall_at_ = odometry;
+    if (open) heading_rad_.reset();
+  }
+  if (side_ == Side::none) return roam(eyes, odometry, now_s, draws);
+  if (beside(eyes)) wall_at_ = odometry;
+  // Around the end of a wall it is lost for less than this.
+  const double lost_m = 3.0 * options_.clearance_m;
+  if (way(odometry, wall_at_) > lost_m) return roam(eyes, odometry, now_s, draws);
+  heading_rad_ = odometry.heading_rad;
+  until_s_ = now_s + options_.hold_s;
+  eyes.block(options_.clearance_m, std::min(options_.look_ahead_m, 2.5 * options_.clearance_m));
+  const bool left = side_ == Side::left;
+  return eyes.first(left ? side_rad : -side_rad, !left).value_or(math::pi);
+}
+
+void Wandering::find_openings(const FreeDirections& eyes) {
+  openings_count_ = 0;
+  constexpr int n = FreeDirections::sectors;
+  const auto open = [&](int s) { return eyes.free(s % n) && eyes.seen(s % n); };
+  int begin = 0;
+  while (begin < n && open(begin)) ++begin;
+  if (begin == n) {
+    openings_[openings_count_++] = {0.0, 2.0 * math::pi};
+    return;
+  }
+  constexpr double sector_rad = 2.0 * math::pi / n;
+  for (int s = begin; s < begin + n; ++s) {
+    if (!open(s)) continue;
+    int end = s;
+    while (open(end)) ++end;
+    const double middle = math::wrap_angle(0.5 * (s + end) * sector_rad - math::pi);
+    openings_[openings_count_++] = {middle, (end - s) * sector_rad};
+    s = end;
+  }
+}
+
+double Wandering::along(FreeDirections& eyes, const drive::Pose& odometry, double now_s,
+                        Stream& draws) {
+  const double corridor_m = std::min(0.7 * options_.range_m, 2.0 * options_.look_ahead_m);
+  eyes.block(options_.clearance_m, corridor_m);
+  find_openings(eyes);
+  if (openings_count_ == 0) {
+    eyes.block(options_.clearance_m, 0.5 * corridor_m);
+    find_openings(eyes);
+  }
+  double held = heading_rad_ ? math::wrap_angle(*heading_rad_ - odometry.heading_rad) : 0.0;
+  int branches = 0;
+  for (std::size_t i = 0; i < openings_count_; ++i) {
+    branches += std::fabs(math::wrap_angle(openings_[i].middle_rad - held)) < ahead_rad;
+  }
+  const bool moved = way(odometry, decided_at_) > between_branches_m;
+  const bool junction = branches > 1 && branches > branches_ && moved;
+  if (moved) branches_ = branches;
+  std::optional<Opening> chosen;
+  if (!heading_rad_ || junction || (moved && now_s >= until_s_)) {
+    // One of those ahead, or any where there is none.
+    std::uint64_t pick = draws.below(static_cast<std::uint64_t>(
+        std::max(branches > 0 ? branches : static_cast<int>(openings_count_), 1)));
+    for (std::size_t i = 0; i < openings_count_ && !chosen; ++i) {
+      const double off = std::fabs(math::wrap_angle(openings_[i].middle_rad - held));
+      if (branches > 0 && off >= ahead_rad) continue;
+      if (pick-- == 0) chosen = openings_[i];
+    }
+    if (chosen) held = chosen->middle_rad;
+    decided_at_ = odometry;
+    until_s_ = now_s + draws.exponential(1.0 / (3.0 * options_.hold_s));
+  }
+  if (openings_count_ == 0) {
+    // A dead end, or a crowd: back.
+    const double back = math::wrap_angle(eyes.most_open());
+    heading_rad_ = math::wrap_angle(odometry.heading_rad + back);
+    return back;
+  }
+  if (!chosen) {
+    const auto off = [&](const Opening& o) {
+      const double d = std::fabs(math::wrap_angle(o.middle_rad - held)) - 0.5 * o.width_rad;
+      return std::max(d, 0.0);
+    };
+    chosen = *std::min_element(openings_.begin(),
+                               openings_.begin() + static_cast<std::ptrdiff_t>(openings_count_),
+                               [&](const Opening& a, const Opening& b) { return off(a) < off(b); });
+  }
+  double bearing = chosen->middle_rad;
+  if (chosen->width_rad > wide_rad) {
+    // An open place is crossed as it was entered.
+    const double slack = 0.5 * chosen->width_rad - 0.3;
+    const double off = math::wrap_angle(held - chosen->middle_rad);
+    bearing = math::wrap_angle(chosen->middle_rad + std::clamp(off, -slack, slack));
+  }
+  heading_rad_ = math::wrap_angle(odometry.heading_rad + bearing);
+  return bearing;
+}
+
+}  // namespace hearsay

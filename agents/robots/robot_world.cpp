@@ -46,7 +46,7 @@ std::optional<drive::Pose> RobotWorld::room(const Start& start, Stream& draws, i
       pose.x_m = start.at->x_m + dx;
       pose.y_m = start.at->y_m + dy;
     }
-    if (!floor_.has_room(pose, robot)) continue;
+    if (!floor_.has_room(pose, robot) || !options_.plan->free({pose.x_m, pose.y_m})) continue;
     const bool beyond_a_wall =
         start.at && advance(walls_, {pose.x_m, pose.y_m}, *start.at, plan::radius_min_m).blocked;
     if (!beyond_a_wall) return pose;

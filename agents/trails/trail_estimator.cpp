@@ -16,9 +16,8 @@ void TrailEstimator::merge(const trails::Crumb& crumb, double now_s) {
   ++counts_.laid;
 }
 
-std::span<const trails::Crumb> TrailEstimator::visit(trails::EventId event,
-                                                     const trails::Point& at, double now_s,
-                                                     double way) {
+std::span<const trails::Crumb> TrailEstimator::visit(trails::EventId event, const trails::Point& at,
+                                                     double now_s, double way) {
   store_.merge(trails::Place{event, at, now_s, numbers_.take()}, now_s);
   places_changed_ = true;
   if (options_.laying == trails::Laying::at_once) {

@@ -43,8 +43,8 @@ class TrailEstimator {
   // Times are those of the robot's own clock; `way` is what d counts (laying.hpp).
 
   /// The robot is at the place of an event. @return the crumbs of a trail that this completes.
-  std::span<const trails::Crumb> visit(trails::EventId event, const trails::Point& at,
-                                       double now_s, double way);
+  std::span<const trails::Crumb> visit(trails::EventId event, const trails::Point& at, double now_s,
+                                       double way);
   /// While it moves; at each step. `laid()` is the crumb, if it is told at once.
   trails::Laid lay(double now_s, const trails::Point& at, double way, trails::EventId goal);
   const trails::Crumb& laid() const { return laid_; }

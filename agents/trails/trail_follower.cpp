@@ -32,6 +32,15 @@ bool TrailFollower::moves_at_random(double now_s, double worn, Stream& draws) {
 TrailFollower::Choice TrailFollower::choose(trails::MetricStore& store, trails::EventId goal,
                                             const drive::Pose& here, double now_s,
                                             double free_left_m, Stream& draws) {
+  if (next_look_s_ && now_s < *next_look_s_ - 1e-9) return chosen_;
+  next_look_s_ = now_s + look_s;
+  chosen_ = look(store, goal, here, now_s, free_left_m, draws);
+  return chosen_;
+}
+
+TrailFollower::Choice TrailFollower::look(trails::MetricStore& store, trails::EventId goal,
+                                          const drive::Pose& here, double now_s, double free_left_m,
+                                          Stream& draws) {
   trails::MetricReach reach{.at = trails::point(here.x_m, here.y_m),
                             .radius_m = options_.sense_radius_m};
   if (options_.field_rad) reach.field = trails::Field{here.heading_rad, *options_.field_rad};

@@ -107,10 +107,10 @@ void TrailWitness::told(int robot, std::span<const trails::Crumb> crumbs) {
       truth_.push_back({at.x_m, at.y_m});
     }
     if (!options_.crumbs) continue;
-    simulation_.record().event(
-        simulation_.now(), r.mind.agent, "crumb",
-        world_.name_of(crumb.event) + ' ' + std::to_string(at.x_m) + ' ' + std::to_string(at.y_m) +
-            ' ' + std::to_string(at.heading_rad) + ' ' + std::to_string(crumb.distance_s));
+    simulation_.record().event(simulation_.now(), r.mind.agent, "crumb",
+                               world_.name_of(crumb.event) + ' ' + std::to_string(at.x_m) + ' ' +
+                                   std::to_string(at.y_m) + ' ' + std::to_string(at.heading_rad) +
+                                   ' ' + std::to_string(crumb.distance_s));
   }
   r.dropped.clear();
 }

@@ -81,8 +81,8 @@ class TrailWitness {
     std::optional<Time> first_arrival;
     std::optional<Time> recovered_from;  ///< the change that it has recovered from
     double recovery_s = 0.0;
-    std::vector<drive::Pose> dropped;   ///< not told yet
-    std::vector<std::uint8_t> hops;     ///< by number of crumb in the book
+    std::vector<drive::Pose> dropped;  ///< not told yet
+    std::vector<std::uint8_t> hops;    ///< by number of crumb in the book
   };
   struct Wanted {
     bool pose, trips, trips_an_hour, crumbs, error, hops;
@@ -102,8 +102,8 @@ class TrailWitness {
   Options options_;
   Wanted wanted_;
   std::vector<Robot> robots_;
-  trails::IdentityTable book_;       // numbers of crumbs
-  std::vector<plan::Point> truth_;   // where each was laid
+  trails::IdentityTable book_;      // numbers of crumbs
+  std::vector<plan::Point> truth_;  // where each was laid
   std::vector<Time> team_trips_;
   std::optional<Time> last_sample_;
 };

@@ -81,6 +81,7 @@ void Drawing::add(const std::string& name, Point at) {
 Plan::Plan(const Drawing& drawing)
     : width_m_(drawing.columns * drawing.cell_m),
       height_m_(drawing.rows * drawing.cell_m),
+      thick_(true),
       walls_(surface(drawing)),
       places_(drawing.places) {}
 
@@ -115,6 +116,21 @@ Plan::Plan(double width_m, double height_m, std::vector<Segment> walls, std::vec
     }
     seen.push_back(place);
   }
+}
+
+bool Plan::free(Point p) const {
+  if (!contains(p)) return false;
+  if (!thick_) return true;
+  // Surfaces are closed, and what is beyond the plan is wall: who crosses an odd number of them on
+  // the way out, to the right, was in the free.
+  bool odd = false;
+  for (const Segment& wall : walls_) {
+    if (wall.from.x_m != wall.to.x_m || wall.from.x_m <= p.x_m) continue;
+    const double low_m = std::min(wall.from.y_m, wall.to.y_m);
+    const double high_m = std::max(wall.from.y_m, wall.to.y_m);
+    if (p.y_m >= low_m && p.y_m < high_m) odd = !odd;
+  }
+  return odd;
 }
 
 Point Plan::place(std::string_view name) const {

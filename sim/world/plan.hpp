@@ -101,6 +101,9 @@ class Plan {
   std::span<const Place> places() const { return places_; }
   /// @throws InputError that names the places there are, if there is none of that name.
   Point place(std::string_view name) const;
+  /// Whether the point is outside of thick walls. Those of a drawing are; a plan of segments has
+  /// none. Goes through all walls.
+  bool free(Point p) const;
   /// Whether the point is within the outer sides or on them.
   bool contains(Point p) const {
     return p.x_m >= 0.0 && p.y_m >= 0.0 && p.x_m <= width_m_ && p.y_m <= height_m_;
@@ -108,6 +111,7 @@ class Plan {
 
  private:
   double width_m_, height_m_;
+  bool thick_ = false;
   std::vector<Segment> walls_;
   std::vector<Place> places_;
 };

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "scenarios/names.hpp"
@@ -155,7 +156,7 @@ class Builder {
   std::vector<int> subjects(const CellRuns& cell) {
     if (column() == nullptr || !column()->is_series()) return {all_subjects};
     const auto present = [&] { return column()->subjects(cell.runs.begin()->second); };
-    if (!expect_.subjects.empty()) return named_subjects(present());
+    if (!expect_.subjects.empty()) return named_subjects(cell);
     if (!rules_.metric.each_subject) {
       subjects_averaged_ = subjects_averaged_ || values_.subjects().size() > 1;
       return {all_subjects};
@@ -163,7 +164,13 @@ class Builder {
     return present();
   }
 
-  std::vector<int> named_subjects(const std::vector<int>& present) const {
+  /// Not all runs need to have them: some make more trips than others.
+  std::vector<int> named_subjects(const CellRuns& cell) const {
+    std::set<int> of_any;
+    for (const auto& [repetition, run] : cell.runs) {
+      for (const int subject : column()->subjects(run)) of_any.insert(subject);
+    }
+    const std::vector<int> present(of_any.begin(), of_any.end());
     std::vector<int> chosen;
     std::vector<std::string> names;
     for (const int subject : present) {

@@ -13,9 +13,12 @@ namespace {
 constexpr double blocked_rad = 0.8;
 /// Walls are looked for from a little behind the side on.
 constexpr double side_rad = 1.9;
+/// Around the end of a wall it drives a curve: more would be to turn on the spot.
+constexpr double curve_rad = 0.5;
 /// What is farther behind is where it came from.
 constexpr double ahead_rad = 2.0;
-constexpr double wide_rad = 1.4;  ///< an opening that is no corridor any more
+constexpr double wide_rad = 1.4;    ///< an opening that is no corridor any more
+constexpr double ended_rad = 0.35;  ///< a branch has ended from which it is farther to the next
 constexpr double between_branches_m = 1.5;
 
 double way(const drive::Pose& a, const drive::Pose& b) {
@@ -89,19 +92,20 @@ double Wandering::follow(FreeDirections& eyes, const drive::Pose& odometry, doub
     side_ = open ? Side::none : left ? Side::left : Side::right;
     side_until_s_ = now_s + draws.exponential(1.0 / (open ? options_.hold_s : options_.follow_s));
     side_chosen_ = true;
-    wall_at_ = odometry;
-    if (open) heading_rad_.reset();
+    wall_at_.reset();
+    heading_rad_.reset();
   }
   if (side_ == Side::none) return roam(eyes, odometry, now_s, draws);
   if (beside(eyes)) wall_at_ = odometry;
   // Around the end of a wall it is lost for less than this.
   const double lost_m = 3.0 * options_.clearance_m;
-  if (way(odometry, wall_at_) > lost_m) return roam(eyes, odometry, now_s, draws);
+  if (!wall_at_ || way(odometry, *wall_at_) > lost_m) return roam(eyes, odometry, now_s, draws);
   heading_rad_ = odometry.heading_rad;
   until_s_ = now_s + options_.hold_s;
   eyes.block(options_.clearance_m, std::min(options_.look_ahead_m, 2.5 * options_.clearance_m));
   const bool left = side_ == Side::left;
-  return eyes.first(left ? side_rad : -side_rad, !left).value_or(math::pi);
+  const double first = eyes.first(left ? side_rad : -side_rad, !left).value_or(math::pi);
+  return left ? std::min(first, curve_rad) : std::max(first, -curve_rad);
 }
 
 void Wandering::find_openings(const FreeDirections& eyes) {
@@ -125,56 +129,62 @@ void Wandering::find_openings(const FreeDirections& eyes) {
   }
 }
 
+const Wandering::Opening* Wandering::branch(double held_rad, int branches, Stream& draws) const {
+  if (openings_count_ == 0) return nullptr;
+  const std::size_t of = branches > 0 ? static_cast<std::size_t>(branches) : openings_count_;
+  std::uint64_t pick = draws.below(of);
+  for (std::size_t i = 0; i < openings_count_; ++i) {
+    const double off = std::fabs(math::wrap_angle(openings_[i].middle_rad - held_rad));
+    if (branches > 0 && off >= ahead_rad) continue;
+    if (pick-- == 0) return &openings_[i];
+  }
+  return nullptr;
+}
+
 double Wandering::along(FreeDirections& eyes, const drive::Pose& odometry, double now_s,
                         Stream& draws) {
   const double corridor_m = std::min(0.7 * options_.range_m, 2.0 * options_.look_ahead_m);
-  eyes.block(options_.clearance_m, corridor_m);
-  find_openings(eyes);
-  if (openings_count_ == 0) {
-    eyes.block(options_.clearance_m, 0.5 * corridor_m);
+  for (const double within_m : {corridor_m, 0.5 * corridor_m}) {
+    eyes.block(options_.clearance_m, within_m);
     find_openings(eyes);
+    if (openings_count_ > 0) break;
   }
   double held = heading_rad_ ? math::wrap_angle(*heading_rad_ - odometry.heading_rad) : 0.0;
+  if (openings_count_ == 0) held = eyes.most_open();  // in a crowd
+  const Opening* chosen = nullptr;
   int branches = 0;
+  double nearest_rad = math::pi;
   for (std::size_t i = 0; i < openings_count_; ++i) {
-    branches += std::fabs(math::wrap_angle(openings_[i].middle_rad - held)) < ahead_rad;
+    const double off = std::fabs(math::wrap_angle(openings_[i].middle_rad - held));
+    branches += off < ahead_rad;
+    const double outside = std::max(off - 0.5 * openings_[i].width_rad, 0.0);
+    if (outside < nearest_rad) {
+      nearest_rad = outside;
+      chosen = &openings_[i];
+    }
   }
   const bool moved = way(odometry, decided_at_) > between_branches_m;
-  const bool junction = branches > 1 && branches > branches_ && moved;
+  const bool junction = branches > std::max(branches_, 1) && moved;
   if (moved) branches_ = branches;
-  std::optional<Opening> chosen;
-  if (!heading_rad_ || junction || (moved && now_s >= until_s_)) {
-    // One of those ahead, or any where there is none.
-    std::uint64_t pick = draws.below(static_cast<std::uint64_t>(
-        std::max(branches > 0 ? branches : static_cast<int>(openings_count_), 1)));
-    for (std::size_t i = 0; i < openings_count_ && !chosen; ++i) {
-      const double off = std::fabs(math::wrap_angle(openings_[i].middle_rad - held));
-      if (branches > 0 && off >= ahead_rad) continue;
-      if (pick-- == 0) chosen = openings_[i];
-    }
-    if (chosen) held = chosen->middle_rad;
+  const bool ended = nearest_rad > ended_rad;
+  if (ended && branches == 0 && heading_rad_ && now_s < until_s_) {
+    // To the end of a dead end, for there may be a way around its corner.
+    eyes.block(options_.clearance_m, std::min(options_.look_ahead_m, 3.0 * options_.clearance_m));
+    const auto on = eyes.nearest({held, std::nullopt});
+    if (on && std::fabs(math::wrap_angle(on->bearing_rad - held)) < ended_rad) return held;
+  }
+  if (!heading_rad_ || junction || ended || now_s >= until_s_) {
+    chosen = branch(held, branches, draws);
+    // In an open place there is a branch everywhere.
+    if (chosen != nullptr) held = draws.uniform(chosen->from_rad(), chosen->to_rad());
     decided_at_ = odometry;
+    branches_ = branches;
     until_s_ = now_s + draws.exponential(1.0 / (3.0 * options_.hold_s));
   }
-  if (openings_count_ == 0) {
-    // A dead end, or a crowd: back.
-    const double back = math::wrap_angle(eyes.most_open());
-    heading_rad_ = math::wrap_angle(odometry.heading_rad + back);
-    return back;
-  }
-  if (!chosen) {
-    const auto off = [&](const Opening& o) {
-      const double d = std::fabs(math::wrap_angle(o.middle_rad - held)) - 0.5 * o.width_rad;
-      return std::max(d, 0.0);
-    };
-    chosen = *std::min_element(openings_.begin(),
-                               openings_.begin() + static_cast<std::ptrdiff_t>(openings_count_),
-                               [&](const Opening& a, const Opening& b) { return off(a) < off(b); });
-  }
-  double bearing = chosen->middle_rad;
-  if (chosen->width_rad > wide_rad) {
-    // An open place is crossed as it was entered.
-    const double slack = 0.5 * chosen->width_rad - 0.3;
+  double bearing = held;
+  if (chosen != nullptr) {
+    // An open place is crossed as it was entered, a corridor in its middle.
+    const double slack = chosen->width_rad > wide_rad ? 0.5 * chosen->width_rad - 0.3 : 0.0;
     const double off = math::wrap_angle(held - chosen->middle_rad);
     bearing = math::wrap_angle(chosen->middle_rad + std::clamp(off, -slack, slack));
   }

@@ -42,12 +42,16 @@ class Wandering {
   /// Neighbouring directions that are free.
   struct Opening {
     double middle_rad, width_rad;
+    double from_rad() const { return middle_rad - 0.5 * width_rad; }
+    double to_rad() const { return middle_rad + 0.5 * width_rad; }
   };
   double roam(FreeDirections& eyes, const drive::Pose& odometry, double now_s, Stream& draws);
   double follow(FreeDirections& eyes, const drive::Pose& odometry, double now_s, Stream& draws);
   double along(FreeDirections& eyes, const drive::Pose& odometry, double now_s, Stream& draws);
   bool beside(const FreeDirections& eyes) const;
   void find_openings(const FreeDirections& eyes);
+  /// One of the openings ahead at random; any, where there is none ahead.
+  const Opening* branch(double held_rad, int branches, Stream& draws) const;
 
   Options options_;
   std::optional<double> heading_rad_;  // that is held, in the frame of the odometry
@@ -55,8 +59,8 @@ class Wandering {
   Side side_ = Side::none;
   double side_until_s_ = 0.0;
   bool side_chosen_ = false;
-  drive::Pose wall_at_;     // where it last had the wall at its side
-  drive::Pose decided_at_;  // where it last chose among branches
+  std::optional<drive::Pose> wall_at_;  // where it last had the wall at its side
+  drive::Pose decided_at_;              // where it last chose among branches
   int branches_ = 0;
   std::array<Opening, FreeDirections::sectors / 2> openings_{};
   std::size_t openings_count_ = 0;

@@ -191,6 +191,17 @@ def wants_log(values):
     return positive[-1] > 50.0 * positive[len(positive) // 20]
 
 
+def tick_ends(axes, nbins):
+    """Few ticks of x, whose labels at the ends do not touch those of the neighbouring panels."""
+    axes.locator_params(nbins=nbins)
+    low, high = axes.get_xlim()
+    ticks = [t for t in axes.get_xticks() if low <= t <= high]
+    axes.set_xticks(ticks, [f"{t:g}" for t in ticks])
+    for tick, align in ((0, "left"), (-1, "right")):
+        if abs(ticks[tick] - (low, high)[tick]) < 0.02 * (high - low):
+            axes.xaxis.get_major_ticks()[tick].label1.set_horizontalalignment(align)
+
+
 def last(values):
     """The value at the last instant that has one, NaN if none has."""
     finite = values[np.isfinite(values)]

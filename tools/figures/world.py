@@ -152,8 +152,9 @@ def lay(root, key, value):
         node[last] = value
 
 
-def read(chosen, cell, run, study_file=None):
-    """The World of a run. @raises UserError for files that are not there or say nothing of it."""
+def scenario_of(chosen, cell, study_file=None, rooms=("world",)):
+    """(file, tree) of the scenario of a cell, with what the study lays over these tables of it.
+    @raises UserError for files that are not there."""
     file = find_study(chosen, study_file)
     study = _toml(file)
     if "scenario" not in study:
@@ -162,8 +163,17 @@ def read(chosen, cell, run, study_file=None):
     tree = _toml(scenario)
     try:
         for key, value in _settings(study, chosen.cells[cell]):
-            if key.split(".")[0] == "world":
+            if re.split(r"[.\[]", key)[0] in rooms:
                 lay(tree, key, value)
+    except (IndexError, TypeError, AttributeError) as error:
+        raise UserError(f"{file}: {key} is nothing of {scenario}") from error
+    return scenario, tree
+
+
+def read(chosen, cell, run, study_file=None):
+    """The World of a run. @raises UserError for files that are not there or say nothing of it."""
+    scenario, tree = scenario_of(chosen, cell, study_file)
+    try:
         world = tree["world"]
         area = world["area"]
         columns, rows, cell_m = (area.get(k, v) for k, v in (("columns", 20), ("rows", 20), ("cell_m", 1.0)))

@@ -1,0 +1,122 @@
+"""Tests of the figures of foragers: their numbers against those worked out by hand, what they say, and what they
+refuse."""
+
+import math
+import unittest
+
+import matplotlib.image
+import numpy as np
+
+from lost_study import SCENARIO, WithForagers  # first: it makes the scripts known
+
+import floors
+import trails_map
+
+
+class Floors(WithForagers):
+    def floor(self, **where):
+        chosen = self.chosen(**where)
+        return floors.read(chosen, 0)
+
+    def test_the_first_line_of_a_drawing_is_at_the_top_and_places_are_in_the_middle_of_their_cells(self):
+        self.make_foragers()
+        floor = self.floor(method="plain", robots="1")
+        self.assertEqual(floor.size_m, (12.0, 6.0))
+        self.assertEqual(floor.walls.astype(int).tolist(), [[1, 0, 1, 1, 1, 1], [1, 0, 0, 0, 0, 1], [1] * 6])
+        self.assertEqual(floor.places, {"A": (3.0, 3.0), "B": (9.0, 3.0), "dock": (3.0, 1.0)})
+
+    def test_the_scenario_says_what_is_closed_and_where_an_event_moves(self):
+        self.make_foragers()
+        floor = self.floor(method="plain", robots="1")
+        [barrier] = floor.barriers
+        self.assertEqual((*barrier.low_m, *barrier.high_m), (4.0, 2.0, 6.0, 4.0))
+        self.assertEqual((barrier.from_s, barrier.until_s), (50.0, math.inf))
+        self.assertEqual((floor.place_of("B", 69.0), floor.place_of("B", 70.0)), ((9.0, 3.0), (3.0, 1.0)))
+        self.assertEqual(floor.starts, ("A",))
+
+    def test_parameter_sets_fill_what_the_scenario_leaves_open_and_the_study_lies_over_both(self):
+        self.make_foragers()
+        plain, search = (self.floor(method=m, robots="1").trails for m in ("plain", "search"))
+        self.assertEqual(plain, {"laying": "at-once", "distance": "time", "age_max_s": 240.0})
+        self.assertEqual(search["laying"], "completed")
+        self.assertEqual(self.floor(method="search", robots="1").barriers, [])
+
+    def test_dark_pixels_of_a_bitmap_are_walls(self):
+        pixels = np.ones((2, 3, 4))
+        pixels[0, 0, :3] = 0.0  # black, upper left
+        pixels[1, 2] = [0.0, 0.0, 0.0, 0.0]  # black, but transparent
+        pixels[1, 1, :3] = [1.0, 0.0, 0.0]  # red is dark
+        matplotlib.image.imsave(self.path("floor.png"), pixels)
+        walls, places = floors.read_bitmap(self.path("floor.png"), 128)
+        self.assertEqual((walls.astype(int).tolist(), places), ([[0, 1, 0], [1, 0, 0]], {}))
+
+    def test_files_that_are_not_there_or_say_nothing_of_a_plan_are_named(self):
+        self.make_foragers(scenario=SCENARIO.replace("floor.txt", "hall.txt"))
+        self.assertEqual(self.refused("trails_map.py", self.file, "x.png", "--by", "method", "--robots", "2"),
+                         f"{self.path('hall.txt')}: no such plan, which {self.path('floor.toml')} names")
+
+    def test_a_scenario_without_a_plan_or_with_lines_of_two_lengths_is_refused(self):
+        self.make_foragers(scenario="duration_s = 5\n", floor="###\n#\n")
+        where = ("--method", "plain", "--robots", "2")
+        self.assertIn("says nothing of a plan", self.refused("trails_map.py", self.file, "x.png", *where))
+        with open(self.path("floor.toml"), "w", encoding="utf-8") as stream:
+            stream.write(SCENARIO)
+        self.assertIn("a plan has lines of one length", self.refused("trails_map.py", self.file, "x.png", *where))
+
+
+class Trips(WithForagers):
+    def run_of(self, repetition=1, **where):
+        self.make_foragers()
+        chosen = self.chosen(**where)
+        return trails_map.Run(chosen, 0, repetition, None)
+
+    def test_a_way_lies_between_its_instants_and_is_cut_where_a_robot_was_carried(self):
+        run = self.run_of(method="search", robots="1")
+        t, x, _ = run.ways.between(0, 20.0, 40.0)
+        self.assertEqual((t[0], t[-1], x[0], x[-1]), (20.0, 37.5, 3.0, 3.0 + 6.0 * 17.5 / 20.0))
+        self.assertFalse(np.isnan(x).any())
+
+    def test_robots_count_for_themselves_and_the_cut_off_trip_stands_for_what_never_came(self):
+        run = self.run_of(3, method="plain", robots="2")  # nobody has a third trip
+
+        def shown(number, last, count):
+            return [(t.agent, t.number, age) for t, age in trails_map.of_iteration(run, number, last, count)]
+
+        self.assertEqual(shown(2, 5, "robot"), [(0, 1, 1), (0, 2, 0), (1, 1, 1), (1, 2, 0)])
+        self.assertEqual(shown(2, 1, "robot"), [(0, 2, 0), (1, 2, 0)])
+        self.assertEqual(shown(9, 2, "robot"), [(0, 2, 1), (0, 3, 0), (1, 2, 1), (1, 3, 0)])
+        self.assertEqual(shown(3, 2, "team"), [(1, 1, 1), (0, 2, 0)])
+        self.assertEqual(shown(9, 2, "team"), [(1, 2, 1), (0, 3, 0), (1, 3, 0)])
+
+    def test_lengths_stand_above_the_panels(self):
+        run = self.run_of(3, method="plain", robots="2")
+        self.assertEqual(trails_map.length_title(run, 2, "robot"), "9, 19 m")
+        self.assertEqual(trails_map.length_title(run, 3, "team"), "9 m")
+        self.assertEqual(trails_map.length_title(run, 3, "robot"), "not reached in 4 trips of all")
+        self.assertEqual(trails_map.instant_title(run, 45.0, 20.0), "2 trips, median 14 m")
+
+    def test_the_figure_has_a_panel_an_iteration_or_an_instant(self):
+        self.make_foragers()
+        said = self.said("trails_map.py", "--by", "method", "--robots", "2", "--iterations", "1;4")
+        for text in ("iteration 1", "iteration 4", "method search", "7, 17 m", "2 robots", "Hatched"):
+            self.assertIn(text, said)
+        said = self.said("trails_map.py", "--method", "search", "--robots", "2", "--times", "30;80", "--window", "20")
+        for text in ("80 s", "in the 20 s before", "on their way then"):
+            self.assertIn(text, said)
+
+    def test_mistakes_are_named(self):
+        self.make_foragers(series=False)
+        where = ("--method", "search", "--robots", "2")
+        self.assertIn("no series 'robot_x_m' and 'robot_y_m'", self.refused("trails_map.py", self.file, "x.png", *where))
+        for more, text in (
+            (("--iterations", "1;x"), "--iterations: 'x' is no number"),
+            (("--times", "0"), "--times: 0 is not above 0"),
+            (("--times", "5", "--iterations", "1"), "give one of them"),
+            (("--last", "0"), "--last and --window are above 0"),
+        ):
+            self.assertIn(text, self.refused("trails_map.py", self.file, "x.png", *where, *more))
+        self.assertIn("choose one method", self.refused("trails_map.py", self.file, "x.png", "--robots", "1"))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -2,6 +2,7 @@
 refuse."""
 
 import math
+import types
 import unittest
 
 import matplotlib.image
@@ -9,6 +10,7 @@ import numpy as np
 
 from lost_study import SCENARIO, WithForagers  # first: it makes the scripts known
 
+import crumbs_map
 import floors
 import trails_map
 
@@ -116,6 +118,56 @@ class Trips(WithForagers):
         ):
             self.assertIn(text, self.refused("trails_map.py", self.file, "x.png", *where, *more))
         self.assertIn("choose one method", self.refused("trails_map.py", self.file, "x.png", "--robots", "1"))
+
+
+class CrumbsOfATeam(WithForagers):
+    def crumbs(self, at_s, method, event, **more):
+        """The one kind of crumbs there is: laid by the first robot at 10, 30, 50 and 70 s, heading east."""
+        self.make_foragers(**more.pop("study", {}))
+        options = {"at": at_s, "age": None, "laying": None, "study_file": None, **more}
+        run = crumbs_map.Run(self.chosen(method=method, robots="1"), 0, 1, types.SimpleNamespace(**options))
+        return run.crumbs[event]
+
+    def test_crumbs_told_at_once_lead_back_and_go_by_their_age(self):
+        found = self.crumbs(60.0, "plain", "A", age=30.0)
+        self.assertEqual(found.laid_s.tolist(), [30.0, 50.0])
+        self.assertEqual(found.x.tolist(), [8.0, 9.0])
+        np.testing.assert_allclose(np.cos(found.way), -1.0)
+
+    def test_crumbs_of_completed_trails_lead_on_and_were_laid_d_before_they_were_told(self):
+        found = self.crumbs(75.0, "search", "B", age=30.0)
+        self.assertEqual((found.told_s.tolist(), found.laid_s.tolist()), ([60.0], [50.0]))
+        np.testing.assert_allclose(np.cos(found.way), 1.0)
+
+    def test_crumbs_live_for_so_many_arrivals_that_of_their_own_robot_included(self):
+        # Arrivals at 20, 40 and 60 s: two since 30 s, one since 50 s.
+        lives = SCENARIO + "trails = { life_arrivals = 2, parameters = \"thesis-2019-text\" }\n"
+        self.assertEqual(self.crumbs(75.0, "search", "B", study={"scenario": lives}).laid_s.tolist(), [50.0])
+
+    def test_of_the_crumbs_in_a_square_that_of_least_d_is_drawn(self):
+        rows = [(1.0, 0.1, 0.1, 0.0, 5.0), (2.0, 0.9, 0.9, 0.0, 3.0), (3.0, 1.1, 0.1, 0.0, 4.0), (4.0, -0.1, 0.1, 0.0, 9.0)]
+        found = crumbs_map.Crumbs(rows, "at-once")
+        self.assertEqual(crumbs_map.thinned(found, 1.0).tolist(), [3, 2, 1])
+        self.assertEqual(crumbs_map.thinned(found, 0.0).tolist(), [3, 0, 2, 1])
+
+    def test_the_figure_has_a_panel_an_event_and_says_how_they_are_read(self):
+        self.make_foragers()
+        said = self.said("crumbs_map.py", "--at", "60", "--method", "plain", "--robots", "1")
+        for text in ("trail to A", "3 crumbs", "no older than 240 s", "against that of the robot", "d: still to go [s]",
+                     "Hatched: closed then"):
+            self.assertIn(text, said)
+        said = self.said("crumbs_map.py", "--at", "80", "--by", "method", "--robots", "2", "--events", "B", "--age", "35")
+        for text in ("method search: trail to B", "method plain: trail to B", "2 crumbs", "none",
+                     "where trails are completed"):
+            self.assertIn(text, said)
+
+    def test_mistakes_are_named(self):
+        self.make_foragers()
+        where = ("--method", "plain", "--robots", "2")
+        self.assertIn("no crumb was told by 5 s; it takes record.crumbs",
+                      self.refused("crumbs_map.py", self.file, "x.png", "--at", "5", *where))
+        self.assertIn("no crumb of 'Q' was told; there are: A",
+                      self.refused("crumbs_map.py", self.file, "x.png", "--at", "50", "--events", "Q", *where))
 
 
 if __name__ == "__main__":

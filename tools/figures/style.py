@@ -38,6 +38,9 @@ _RULES = {
 }
 # Who shares a colour with a rule of the same figure is dashed.
 _DASHED = ("geometric-mean", "linear-pool", "elementwise-maximum", "averaged-parameters")
+# of what has no look of its own
+_LABELS = ((BLUE, "o"), (ORANGE, "s"), (GREEN, "^"), (PURPLE, "D"), (SKY, "v"), (VERMILLION, "P"), (GREY, "h"),
+           (BLACK, "X"))
 # of vehicles, beside one another on a map
 AGENTS = (BLUE, ORANGE, GREEN, PURPLE, SKY, VERMILLION, GREY, BLACK)
 _OTHERS = ((PURPLE, "X"), (BLACK, "*"), (GREEN, "<"), (ORANGE, "h"), (SKY, ">"), (BLUE, "p"), (GREY, "H"),
@@ -97,6 +100,13 @@ def rule_style(rule, rules):
     taken = {_RULES[r][0] for r in rules if r in _RULES}
     free = sorted(_OTHERS, key=lambda look: look[0] in taken)  # colours that nobody has yet come first
     return free[others.index(rule) % len(free)]
+
+
+def label_style(label, labels):
+    """Colour and marker of a label of any axis, by its place among `labels`; rules look as they always do."""
+    if any(one in _RULES for one in labels):
+        return rule_style(label, labels)
+    return _LABELS[labels.index(label) % len(_LABELS)]
 
 
 def rule_dash(rule):

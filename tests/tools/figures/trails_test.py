@@ -2,6 +2,7 @@
 refuse."""
 
 import math
+import os
 import types
 import unittest
 
@@ -11,8 +12,11 @@ import numpy as np
 from lost_study import SCENARIO, WithForagers  # first: it makes the scripts known
 
 import crumbs_map
+import data
 import floors
+import trail_lengths
 import trails_map
+import trips
 
 
 class Floors(WithForagers):
@@ -168,6 +172,63 @@ class CrumbsOfATeam(WithForagers):
                       self.refused("crumbs_map.py", self.file, "x.png", "--at", "5", *where))
         self.assertIn("no crumb of 'Q' was told; there are: A",
                       self.refused("crumbs_map.py", self.file, "x.png", "--at", "50", "--events", "Q", *where))
+
+
+class LengthsOfTrips(WithForagers):
+    def lengths(self, method, count, robots="2"):
+        if not os.path.exists(self.file):
+            self.make_foragers()
+        chosen = self.chosen(method=method, robots=robots)
+        return trail_lengths.Lengths(chosen, trail_lengths.runs_of(chosen, 0), trips.of_runs(chosen), count)
+
+    def test_quartiles_are_over_robots_and_runs_of_those_who_got_there(self):
+        # Trip n of robot a in repetition r: 12 / n + r + 10 a; in the third repetition there are two trips.
+        low, middle, high, there = self.lengths("plain", "robot").quartiles()
+        np.testing.assert_allclose(middle[0], 12.0 + 0.5 * (3.0 + 11.0))
+        np.testing.assert_allclose([low[2], middle[2], high[2]], np.quantile([5.0, 6.0, 15.0, 16.0], [0.25, 0.5, 0.75]))
+        np.testing.assert_allclose(there, [1.0, 1.0, 2.0 / 3.0, 2.0 / 3.0])
+
+    def test_the_line_ends_where_less_than_half_got_there(self):
+        found = self.lengths("plain", "robot")
+        found.values[1] = found.values[1][:, :2]
+        self.assertEqual(np.isfinite(found.quartiles()[1]).tolist(), [True, True, False, False])
+
+    def test_a_run_has_the_median_of_its_robots_or_the_trip_of_the_team(self):
+        found = self.lengths("plain", "robot")
+        np.testing.assert_allclose(found.of_runs()[0], 12.0 / np.arange(1, 5) + 1.0 + 5.0)
+        np.testing.assert_allclose(found.final(3), [10.0, 11.0])
+        self.assertEqual(len(found.final(5)), 0)
+        team = self.lengths("plain", "team")
+        np.testing.assert_allclose(team.final(3), [7.0, 8.0, 9.0])  # the second trip of the first robot
+        self.assertEqual(team.iterations, 8)
+
+    def test_bins_are_round_and_hold_all(self):
+        edges = trail_lengths.bins_of(np.array([71.3, 80.0, 96.0]))
+        np.testing.assert_allclose(edges, [70.0, 75.0, 80.0, 85.0, 90.0, 95.0, 100.0])
+        self.assertEqual(len(trail_lengths.bins_of(np.array([5.0]))), 2)
+
+    def test_the_figure_says_what_the_fits_are_and_who_is_missing(self):
+        self.make_foragers()
+        said = self.said("trail_lengths.py", "--robots", "1", "--final", "3", "--shortest", "4.5")
+        for text in ("plain: 5.5 ± 0.7 m, 2 of 3 runs", "search: 10.0 ± 1.0 m, 3 of 3 runs", "4.5 m", "Dotted",
+                     "Iteration 3"):
+            self.assertIn(text, said)
+        self.assertIn("no run got so far", self.said("trail_lengths.py", "--robots", "1", "--method", "plain"))
+
+    def test_mistakes_are_named(self):
+        self.make_foragers()
+        for more, text in (
+            (("--final", "0"), "--final and --until are above 0"),
+            (("--shortest", "-1"), "--shortest: -1 is not above 0"),
+            (("--shortest", "5", "--highest", "4"), "--highest: it is not above --shortest"),
+        ):
+            self.assertIn(text, self.refused("trail_lengths.py", self.file, "x.png", "--robots", "1", *more))
+        connection = data.sqlite3.connect(self.file)
+        connection.execute("DELETE FROM event")
+        connection.commit()
+        connection.close()
+        self.assertIn("no forager of 'lost' ever arrived",
+                      self.refused("trail_lengths.py", self.file, "x.png", "--robots", "1"))
 
 
 if __name__ == "__main__":

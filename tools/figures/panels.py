@@ -130,8 +130,8 @@ def chosen_labels(chosen, axis, text):
 
 
 def label_name(axis, label):
-    """A label as a reader says it: of a rule its name, of loss 30 % loss, else with its axis before it."""
-    if axis in ("rule", "topology"):
+    """A label as a reader says it: of a rule or method its name, of loss 30 % loss, else with its axis before it."""
+    if axis in ("rule", "topology", "method"):
         return label
     return f"{percent(label)} loss" if axis == "loss" else f"{axis} {label}"
 

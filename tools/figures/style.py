@@ -103,8 +103,9 @@ def rule_style(rule, rules):
 
 
 def label_style(label, labels):
-    """Colour and marker of a label of any axis, by its place among `labels`; rules look as they always do."""
-    if any(one in _RULES for one in labels):
+    """Colour and marker of a label of any axis, by its place among `labels`; rules look as they always do. (Not only
+    rules have a label "none".)"""
+    if any(one in _RULES and one != "none" for one in labels):
         return rule_style(label, labels)
     return _LABELS[labels.index(label) % len(_LABELS)]
 

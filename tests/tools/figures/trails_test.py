@@ -14,6 +14,8 @@ from lost_study import SCENARIO, WithForagers  # first: it makes the scripts kno
 import crumbs_map
 import data
 import floors
+import style
+import throughput
 import trail_lengths
 import trails_map
 import trips
@@ -104,7 +106,7 @@ class Trips(WithForagers):
     def test_the_figure_has_a_panel_an_iteration_or_an_instant(self):
         self.make_foragers()
         said = self.said("trails_map.py", "--by", "method", "--robots", "2", "--iterations", "1;4")
-        for text in ("iteration 1", "iteration 4", "method search", "7, 17 m", "2 robots", "Hatched"):
+        for text in ("iteration 1", "iteration 4", "search", "7, 17 m", "2 robots", "Hatched"):
             self.assertIn(text, said)
         said = self.said("trails_map.py", "--method", "search", "--robots", "2", "--times", "30;80", "--window", "20")
         for text in ("80 s", "in the 20 s before", "on their way then"):
@@ -161,7 +163,7 @@ class CrumbsOfATeam(WithForagers):
                      "Hatched: closed then"):
             self.assertIn(text, said)
         said = self.said("crumbs_map.py", "--at", "80", "--by", "method", "--robots", "2", "--events", "B", "--age", "35")
-        for text in ("method search: trail to B", "method plain: trail to B", "2 crumbs", "none",
+        for text in ("search: trail to B", "plain: trail to B", "2 crumbs", "none",
                      "where trails are completed"):
             self.assertIn(text, said)
 
@@ -229,6 +231,41 @@ class LengthsOfTrips(WithForagers):
         connection.close()
         self.assertIn("no forager of 'lost' ever arrived",
                       self.refused("trail_lengths.py", self.file, "x.png", "--robots", "1"))
+
+
+class ThroughputOfTeams(WithForagers):
+    def test_trips_of_the_team_are_counted_by_the_hour_of_the_scenario(self):
+        self.make_foragers()
+        found = throughput.Throughput(self.chosen(), "robots", "method", ["plain", "search"], None)
+        # Of 90 s: each robot has 4, 4 and 2 trips under plain, 4 each under search.
+        mean, half = found.curve("plain")
+        np.testing.assert_allclose(mean, [40.0 * 10.0 / 3.0, 40.0 * 20.0 / 3.0])
+        t_of_two = 4.302653  # 97.5 % of Student's t with two degrees of freedom
+        np.testing.assert_allclose(half[0], 40.0 * t_of_two * math.sqrt(4.0 / 3.0) / math.sqrt(3.0), rtol=1e-6)
+        np.testing.assert_allclose(found.curve("search"), [[160.0, 320.0], [0.0, 0.0]])
+
+    def test_published_points_have_the_colour_of_the_label_that_means_the_same(self):
+        labels = ["none", "so-lost", "highway"]
+        looks = [style.label_style(label, labels)[0] for label in labels]
+        self.assertEqual(len(set(looks)), 3)
+        self.assertEqual([throughput.published_color(n, labels) for n in ("LOST", "SO-LOST")], looks[:2])
+        self.assertEqual(throughput.published_color("LOST", ["plain"]), style.GREY)
+        self.assertEqual({len(values) for values in throughput.SO_LOST.values()}, {10})
+
+    def test_the_figure_names_lines_and_where_points_are_from(self):
+        self.make_foragers()
+        said = self.said("throughput.py")
+        for text in ("plain", "SO-LOST, published", "Sadat", "± 5 %", "3 repetitions"):
+            self.assertIn(text, said)
+        self.assertNotIn("published", self.said("throughput.py", "--published", "none"))
+
+    def test_mistakes_are_named(self):
+        self.make_foragers(scenario=SCENARIO.replace("duration_s = 90", ""))
+        self.assertEqual(self.refused("throughput.py", self.file, "x.png"),
+                         f"{self.path('floor.toml')}: it does not say duration_s")
+        self.assertIn("axis method has labels that are no numbers",
+                      self.refused("throughput.py", self.file, "x.png", "--over", "method", "--by", "robots"))
+        self.assertIn("one axis twice", self.refused("throughput.py", self.file, "x.png", "--over", "method"))
 
 
 if __name__ == "__main__":

@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""What exploring vehicles end with against the labels of an axis, such as the number of vehicles, the loss of
-the radio, the time between talks: a row a metric, a column a label of another axis, a line a rule.
+"""What exploring vehicles or foraging robots end with against the labels of an axis, such as their number, the loss
+of the radio, the time between talks: a row a metric, a column a label of another axis, a line a rule.
 
     grid_levels.py DATABASE OUTPUT --over AXIS [--panels AXIS] [--by rule] [--rules A;B;…]
-                   [--metrics cells_false_share;bytes_sent] [--threshold 0.8] [--study S]
+                   [--metrics cells_false_share;bytes_sent] [--threshold 0.8] [--team] [--study S]
 
-Metrics are series, at their end, or scalars. OUTPUT ends with .png, .svg or .pdf. Any other axis of the study is
+Metrics are series, at their end, or scalars, of each agent or with --team of all together. OUTPUT ends with .png, .svg or .pdf. Any other axis of the study is
 chosen by an option of its name.
 """
 
@@ -19,7 +19,7 @@ import panels
 import stats
 import style
 
-MEDIANS = ("alarms_found_s",)  # infinite in runs that never get there
+MEDIANS = ("alarms_found_s", "first_arrival_s", "recovery_s")  # infinite in runs that never get there
 KILO = ("bytes_sent",)  # drawn in thousands
 ALONE = "none"  # who hears nobody is the same whatever the radio does: studies may run it once
 SPAN = 20.0  # numbers on an axis that span more are spaced by their logarithms
@@ -30,7 +30,7 @@ TITLES = {"loss": "share of packets lost", "agents": "vehicles", "talk": "time b
 class Metric:
     """Values at the end of the runs, by cell."""
 
-    def __init__(self, chosen, name, threshold):
+    def __init__(self, chosen, name, threshold, team=False):
         self.name = name
         self.subject, self._series, self._scalar = None, None, None
         self.median = name in MEDIANS
@@ -43,8 +43,12 @@ class Metric:
             agents = np.array(sorted(self._scalar))
             if not self._scalar:
                 raise data.UserError(f"no series or scalar {name!r} in these runs of {chosen.study!r}")
-        self.of_fleet = not (agents >= 0).any()  # agent −1 speaks for all
-        self.has_central = data.CENTRAL in agents and not self.of_fleet and name != "cells_seen_share"
+        if team and data.CENTRAL not in agents:
+            raise data.UserError(f"--team: {name} was recorded of agents alone")
+        self.of_fleet = team or not (agents >= 0).any()  # agent −1 speaks for all
+        # Of foragers agent −1 is the team, no filter that has every look.
+        self.has_central = (data.CENTRAL in agents and not self.of_fleet and name != "cells_seen_share"
+                            and not forage(chosen))
 
     def of(self, cell, central=False):
         """(value, low, high) over vehicles and repetitions, or of agent −1; NaN where unknown."""
@@ -108,6 +112,19 @@ class Levels:
         return x, 0.008 * (np.ptp(x) or 1.0), spread
 
 
+def forage(chosen):
+    """Whether the agents of these runs are foragers."""
+    return bool(chosen.rows("SELECT 1 FROM agent WHERE run = (SELECT MIN(run) FROM temp.chosen)"
+                            " AND kind = 'forager' LIMIT 1"))
+
+
+def look(by, label, labels):
+    """Colour and marker of a line."""
+    if label is None:
+        return style.BLUE, "o"
+    return style.rule_style(label, labels) if by == "rule" else style.label_style(label, labels)
+
+
 def numeric(labels):
     try:
         return np.isfinite([float(label) for label in labels]).all()
@@ -121,7 +138,8 @@ class ValueAxis:
 
     def __init__(self, values):
         finite = values[np.isfinite(values)]
-        if len(finite) == 0:
+        self.empty = len(finite) == 0
+        if self.empty:
             finite = np.array([0.0, 1.0])
         self.log = panels.wants_log(finite)
         self.never = np.isposinf(values).any()
@@ -157,7 +175,7 @@ class ValueAxis:
             axes.set_ylim(self.low, self.high)
         if self.never:
             axes.axhline(self.ceiling, color=style.GREY, lw=0.7, ls=(0, (2, 2)), zorder=1)
-            ticks = [t for t in axes.get_yticks() if self.low <= t < self.ceiling]
+            ticks = [] if self.empty else [t for t in axes.get_yticks() if self.low <= t < self.ceiling]
             axes.set_yticks([*ticks, self.above], [*(f"{t:g}" for t in ticks), "never"])
             axes.set_ylim(self.low, self.high)
 
@@ -168,18 +186,20 @@ def panel(axes, levels, metric, name, axis):
     if metric.has_central:
         axes.plot(x, axis.at(levels.central(metric, name)), "-", color=style.BLACK, lw=1.3, zorder=2.5)
     for k, label in enumerate(levels.labels):
-        color, marker = style.rule_style(label, levels.labels) if label is not None else (style.BLUE, "o")
+        color, marker = look(levels.by, label, levels.labels)
         value, low, high = levels.curve(metric, name, label)
         if not np.isfinite(value).any() and not np.isinf(value).any():
             continue
         at = x + shift * (k - 0.5 * (len(levels.labels) - 1))
         faint = 1.0 if numeric(levels.levels) else 0.35  # there is nothing between names
-        axes.plot(at, axis.at(value), ls=style.rule_dash(label), color=color, lw=1.2, alpha=faint, zorder=3)
+        axes.plot(at, np.where(np.isinf(value), np.nan, axis.at(value)), ls=style.rule_dash(label), color=color, lw=1.2,
+                  alpha=faint, zorder=3)  # no line leads to what never comes
         known = ~np.isnan(low) & ~np.isnan(high)
         axes.vlines(at[known], axis.at(low)[known], axis.at(high)[known], color=color, lw=0.9, alpha=0.75, zorder=2)
         beyond = np.isinf(value) | (axis.log & (value <= 0.0))
-        for mask, face in ((~beyond, color), (beyond, "white")):
-            axes.plot(at[mask], axis.at(value)[mask], marker, color=color, mfc=face, ms=4.6, mew=1.0,
+        never = np.isinf(value)
+        for mask, face, sign in ((~beyond, color, marker), (beyond & ~never, "white", marker), (never, "white", "^")):
+            axes.plot(at[mask], axis.at(value)[mask], sign, color=color, mfc=face, ms=4.6, mew=1.0,
                       zorder=4, clip_on=False)
 
 
@@ -257,18 +277,21 @@ def caption(levels, scales):
     chosen = levels.chosen
     drawn = [a for a in (levels.over, levels.columns, levels.by) if a]
     others = chosen.described(*drawn)
+    each = "robots" if forage(chosen) else "vehicles"
+    whose = "of all together; means over" if all(m.of_fleet for m in levels.metrics) else f"means over {each} and"
     sentences = [
-        f"At the end of the runs; means over vehicles and {chosen.repetitions} paired"
+        f"At the end of the runs; {whose} {chosen.repetitions} paired"
         f" repetitions{', ' + others if others else ''}; strokes: 95 % bootstrap interval over repetitions.",
     ]
     if any(m.median for m in levels.metrics):
-        sentences.append("Times are medians over vehicles and repetitions, counting who never gets there.")
+        over = "repetitions" if all(m.of_fleet for m in levels.metrics if m.median) else f"{each} and repetitions"
+        sentences.append(f"Times are medians over {over}, counting who never gets there.")
     if any(m.has_central for m in levels.metrics):
         sentences.append("Black: the central grid, which has every look once, mean over the lines' runs.")
     if any(axis.has_zero for axis in scales):
         sentences.append("Hollow, below the dotted line of a logarithmic axis: zero.")
     if any(axis.never for axis in scales):
-        sentences.append("Hollow, above a dotted line: most of them never do.")
+        sentences.append("Arrows above a dotted line: most of them never do.")
     if ALONE in levels.labels and any(len(set(levels.cells(p, ALONE))) < len(levels.levels) for p in levels.panels):
         sentences.append(f"{ALONE}: run once, for it does not depend on the axis.")
     if chosen.failed:
@@ -284,6 +307,7 @@ def main():
     parser.add_argument("--rules", "--labels", default="", dest="labels", help="labels of that axis, with ; between")
     parser.add_argument("--metrics", "--metric", default="cells_false_share", help="series or scalars, with ; between")
     parser.add_argument("--threshold", default="0.8", help="of metrics of alarms")
+    parser.add_argument("--team", action="store_true", help="of all together: agent −1")
     arguments, chosen = data.parse(parser)
     by = arguments.by if arguments.by != "rule" or "rule" in chosen.axes else None
     drawn = [axis for axis in (arguments.over, arguments.panels, by) if axis]
@@ -291,11 +315,13 @@ def main():
         raise data.UserError(f"--over, --panels and --by name one axis twice: {', '.join(drawn)}")
     chosen.require_axes(*drawn)
     labels = panels.chosen_labels(chosen, by, arguments.labels) if by else [None]
-    metrics = [Metric(chosen, m, arguments.threshold) for m in panels.names_in(arguments.metrics, "--metrics")]
+    metrics = [
+        Metric(chosen, m, arguments.threshold, arguments.team) for m in panels.names_in(arguments.metrics, "--metrics")
+    ]
     levels = Levels(chosen, arguments.over, arguments.panels, by, labels, metrics)
     entries = []
     for label in labels if by else []:
-        color, marker = style.rule_style(label, labels)
+        color, marker = look(by, label, labels)
         entries.append(panels.line_entry(style.rule_dash(label), color, panels.label_name(by, label), marker))
     if any(m.has_central for m in metrics):
         entries.append(panels.line_entry("-", style.BLACK, "central grid"))

@@ -161,6 +161,18 @@ METRICS = {
     "agents_a_cell": ("vehicles that looked at a cell", "vehicles that\nlooked at a cell"),
     "distance_flown_m": ("way of a vehicle [m]", "way of a\nvehicle [m]"),
     "bytes_sent": ("kB a vehicle sent", "kB a\nvehicle sent"),
+    # of foragers
+    "trips": ("trips", "trips"),
+    "trips_an_hour": ("trips an hour", "trips\nan hour"),
+    "trip_length_mean_m": ("length of a trip [m]", "length of\na trip [m]"),
+    "trip_time_mean_s": ("time of a trip [s]", "time of\na trip [s]"),
+    "first_arrival_s": ("first arrival [s]", "first\narrival [s]"),
+    "recovery_s": ("first arrival after the change [s]", "arrival after\nthe change [s]"),
+    "distance_driven_m": ("way driven [m]", "way\ndriven [m]"),
+    "time_following_share": ("share of time on trails", "share of time\non trails"),
+    "time_exploring_share": ("share of time exploring", "share of time\nexploring"),
+    "crumb_error_m": ("error of crumbs [m]", "error of\ncrumbs [m]"),
+    "crumbs_wrong_share": ("share of crumbs out of reach", "crumbs out\nof reach"),
 }
 
 

@@ -14,6 +14,7 @@ from lost_study import SCENARIO, WithForagers  # first: it makes the scripts kno
 import crumbs_map
 import data
 import floors
+import grid_levels
 import style
 import throughput
 import trail_lengths
@@ -266,6 +267,36 @@ class ThroughputOfTeams(WithForagers):
         self.assertIn("axis method has labels that are no numbers",
                       self.refused("throughput.py", self.file, "x.png", "--over", "method", "--by", "robots"))
         self.assertIn("one axis twice", self.refused("throughput.py", self.file, "x.png", "--over", "method"))
+
+
+class LevelsOfForagers(WithForagers):
+    def curve(self, metric, team, method):
+        if not os.path.exists(self.file):
+            self.make_foragers()
+        chosen = self.chosen()
+        found = grid_levels.Metric(chosen, metric, "0.8", team)
+        levels = grid_levels.Levels(chosen, "robots", None, "method", ["plain", "search"], [found])
+        self.assertFalse(found.has_central)  # agent -1 is the team
+        return levels.curve(found, None, method)
+
+    def test_a_metric_is_of_each_robot_or_of_the_team(self):
+        np.testing.assert_allclose(self.curve("trips", False, "plain")[0], [10.0 / 3.0, 10.0 / 3.0])
+        np.testing.assert_allclose(self.curve("trips", True, "plain")[0], [10.0 / 3.0, 20.0 / 3.0])
+
+    def test_recovery_is_a_median_that_counts_who_never_gets_over_it(self):
+        self.assertEqual(self.curve("recovery_s", True, "plain")[0].tolist(), [math.inf, math.inf])
+        self.assertEqual(self.curve("recovery_s", True, "search")[0].tolist(), [50.0, 50.0])
+
+    def test_the_figure_says_who_is_meant_and_what_never_comes(self):
+        self.make_foragers()
+        options = ("--over", "robots", "--by", "method", "--metrics", "trips;recovery_s", "--team")
+        said = self.said("grid_levels.py", *options)
+        for text in ("search", "of all together", "never", "Arrows above a dotted line", "medians over repetitions"):
+            self.assertIn(text, said)
+        alone = self.said("grid_levels.py", "--over", "robots", "--method", "plain", "--metrics", "recovery_s")
+        self.assertIn("never", alone)
+        self.assertNotIn("0.2", alone)  # an axis on which nothing stands has no numbers
+        self.assertNotIn("central grid", said + alone)
 
 
 if __name__ == "__main__":

@@ -59,7 +59,11 @@ void ForagerAgent::start() {
 Process ForagerAgent::control() {
   for (std::int64_t k = 0;; ++k) {
     co_await context().sleep_until(Time::at(options_.period * k));
-    if (context().up()) step();
+    if (context().up()) {
+      step();
+    } else {
+      estimator_.store().advance(now_s());  // crumbs grow old in whoever holds them
+    }
   }
 }
 
@@ -85,8 +89,8 @@ void ForagerAgent::step() {
 }
 
 void ForagerAgent::arrive() {
-  const bool first = !std::exchange(has_arrived_, true);
-  witness_.arrived(options_.robot, goal());
+  const bool ends_trip = witness_.arrived(options_.robot, goal());
+  const bool first = ends_trip && !std::exchange(has_made_trip_, true);
   witness_.told(options_.robot, estimator_.visit(goal(), believed(), now_s(), way()));
   follower_.arrived(draws_);
   pilot_.reset();
@@ -103,6 +107,7 @@ bool ForagerAgent::put_back() {
   const Stream draws = context().stream_at("put back", times_put_back_++);
   if (!world_.carry(options_.robot, options_.start, draws)) return false;
   to_put_back_ = false;
+  estimator_.carried();
   // Who carries it tells it where it is.
   odometer_.set(drive::relative_to(frame_, world_.pose(options_.robot)));
   carry_radio();

@@ -116,7 +116,7 @@ class ForagerAgent final : public Agent {
   std::vector<double> scan_m_;
   std::size_t aim_ = 0;
   double way_s_ = 0.0;  ///< driven without turning
-  bool has_arrived_ = false, waits_ = false, to_put_back_ = false, radio_moves_ = false;
+  bool has_made_trip_ = false, waits_ = false, to_put_back_ = false, radio_moves_ = false;
   std::uint64_t messages_ = 0, times_put_back_ = 0, not_sent_ = 0;
   plan::Path map_way_;
   std::size_t map_next_ = 0;

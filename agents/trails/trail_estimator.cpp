@@ -44,10 +44,14 @@ trails::Laid TrailEstimator::lay(double now_s, const trails::Point& at, double w
   return trails::Laid::crumb;
 }
 
-void TrailEstimator::forget() {
-  store_.clear();
+void TrailEstimator::carried() {
   temporary_.clear();
   return_ = trails::ReturnTrail<trails::Point>(options_.interval_s);
+}
+
+void TrailEstimator::forget() {
+  store_.clear();
+  carried();
   numbers_ = trails::Numbering(options_.store.robot, ++incarnation_);
   messages_ = 0;
   places_changed_ = false;

@@ -50,6 +50,8 @@ class TrailEstimator {
   const trails::Crumb& laid() const { return laid_; }
   /// Forgets the trail that is not told yet.
   void set_off_anew() { temporary_.clear(); }
+  /// It was carried elsewhere: no way leads from here to where it came from.
+  void carried();
   /// Loses its memory.
   void forget();
 

@@ -65,9 +65,9 @@ void TrailWitness::drove(int robot, double length_m, bool blocked, Doing doing, 
   if (blocked) r.blocked_s += dt_s;
 }
 
-void TrailWitness::arrived(int robot, trails::EventId event) {
+bool TrailWitness::arrived(int robot, trails::EventId event) {
   Robot& r = robots_[index(robot)];
-  if (!r.set_off) return;
+  if (!r.set_off) return false;
   const Time now = simulation_.now();
   const Trip trip{r.distance_m - r.set_off_m, (now - *r.set_off).seconds()};
   r.trips.push_back(trip);
@@ -83,6 +83,7 @@ void TrailWitness::arrived(int robot, trails::EventId event) {
                              world_.name_of(event) + ' ' + std::to_string(r.trips.size()) + ' ' +
                                  std::to_string(trip.length_m) + ' ' +
                                  std::to_string(trip.duration_s));
+  return true;
 }
 
 bool TrailWitness::all_arrived() const {

@@ -51,8 +51,8 @@ class TrailWitness {
   /// A trip begins: the robot sets off.
   void sets_off(int robot);
   void drove(int robot, double length_m, bool blocked, Doing doing, double dt_s);
-  /// The trip ends, if one has begun.
-  void arrived(int robot, trails::EventId event);
+  /// The trip ends, if one has begun: whether it had.
+  bool arrived(int robot, trails::EventId event);
   /// It dropped a crumb here; of what it told, or was silent about.
   void dropped(int robot);
   void told(int robot, std::span<const trails::Crumb> crumbs);

@@ -1,0 +1,262 @@
+// Whole runs of foragers, from their files: who dies, forgets, is put back, waits, or is in the
+// way.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "sim/math/functions.hpp"
+#include "sim/world/collision.hpp"
+#include "tests/scenarios/forager_bed.hpp"
+
+namespace hearsay {
+namespace {
+
+constexpr double radius_m = 0.25, speed_m_per_s = 0.25, tick_s = 0.1;
+
+/// In a corridor with A at (4.75, 1.75) and B at (16.25, 1.75).
+const std::string team = R"(duration_s = 600
+[world.plan]
+file = "plan.txt"
+[radio]
+topology = "full"
+rate_bps = 1_000_000
+[record]
+series_period_s = 1
+[[agents]]
+kind = "forager"
+count = 3
+robot = { start = "A", scatter_m = 1.2, rays = 90 }
+task = { events = ["A", "B"] }
+trails = { exploration = "corridor" }
+talk = { policy = "at-once" }
+)";
+const plan::Point a{4.75, 1.75};
+
+class ForagerLife : public ForagerBed {
+ protected:
+  void SetUp() override {
+    ForagerBed::SetUp();
+    series_ = {"robot_x_m", "robot_y_m", "crumbs_alive", "trips_so_far", "trip_duration_s"};
+    write("plan.txt", straight_corridor(40, 8));
+  }
+  /// With tables in front of the agents.
+  static std::string and_also(const std::string& text, const std::string& tables) {
+    return with(text, "[record]\n", tables + "[record]\n");
+  }
+  static std::map<double, plan::Point> way(const Values& values, AgentId id) {
+    std::map<double, plan::Point> points;
+    const auto y_m = values.over_time(id, "robot_y_m");
+    for (const auto& [time, x_m] : values.over_time(id, "robot_x_m")) {
+      points[time] = {x_m, y_m.at(time)};
+    }
+    return points;
+  }
+  static double apart(plan::Point p, plan::Point q) {
+    return math::hypot(p.x_m - q.x_m, p.y_m - q.y_m);
+  }
+  /// How far it gets between two times.
+  static double moved(const Values& values, AgentId id, double from_s, double to_s) {
+    const auto points = way(values, id);
+    double most = 0.0;
+    for (const auto& [time, p] : points) {
+      if (time >= from_s && time <= to_s) most = std::max(most, apart(p, points.at(from_s)));
+    }
+    return most;
+  }
+};
+
+TEST_F(ForagerLife, ADeadRobotMovesNoMoreAndOthersGoOn) {
+  const Values values =
+      run(and_also(team, "[[dropouts]]\nagents = [\"forager2\"]\nkind = \"die\"\nfrom_s = 200\n"));
+  for (AgentId id = 0; id < 3; ++id) {
+    EXPECT_GT(moved(values, id, 100.0, 199.0), 5.0) << id;
+    const auto trips = values.over_time(id, "trips_so_far");
+    if (id == 1) {
+      EXPECT_EQ(moved(values, id, 200.0, 600.0), 0.0);
+      EXPECT_EQ(trips.at(200.0), trips.at(600.0));
+    } else {
+      EXPECT_GT(moved(values, id, 200.0, 600.0), 5.0) << id;
+      EXPECT_GE(trips.at(600.0), trips.at(200.0) + 5.0) << id;
+    }
+  }
+}
+
+TEST_F(ForagerLife, CrumbsDoNotOutliveTheirAgeEvenWhereAllAreDead) {
+  const std::string short_lived = with(team, "exploration", "age_max_s = 100, exploration");
+  const Values values = run(and_also(short_lived, "[[dropouts]]\nkind = \"die\"\nfrom_s = 300\n"));
+  for (AgentId id = 0; id < 3; ++id) {
+    const auto alive = values.over_time(id, "crumbs_alive");
+    EXPECT_GT(alive.at(300.0), 50.0) << id;
+    // Each robot lays at most one in two seconds, and all three are heard.
+    for (const auto& [time, crumbs] : alive) EXPECT_LE(crumbs, 3.0 * 51.0);
+    for (const auto& [time, crumbs] : alive) {
+      if (time <= 300.0) continue;
+      EXPECT_LE(crumbs, time > 400.0 ? 0.0 : alive.at(time - 1.0)) << id << " at " << time;
+    }
+  }
+}
+
+TEST_F(ForagerLife, ARebootEmptiesTheMemoryUnlessItRemembers) {
+  for (const bool remembers : {true, false}) {
+    const std::string memory = remembers ? "memory = true\n" : "";
+    const Values values =
+        run(and_also(with(team, "count = 3", "count = 2"),
+                     "[[dropouts]]\nagents = [\"forager1\"]\nkind = \"reboot\"\nfrom_s = 300\n"
+                     "until_s = 310\n" +
+                         memory));
+    const auto alive = values.over_time(0, "crumbs_alive");
+    EXPECT_GT(alive.at(299.0), 100.0);
+    if (remembers) {
+      EXPECT_GT(alive.at(311.0), 100.0);
+    } else {
+      // What it may have heard by then is what the other lays: one in two seconds.
+      EXPECT_LE(alive.at(311.0), 3.0);
+      // And what the other laid before does not come again: nobody passes it on.
+      EXPECT_LT(alive.at(330.0), 0.5 * alive.at(299.0));
+    }
+    EXPECT_EQ(moved(values, 0, 301.0, 309.0), 0.0);
+    EXPECT_GT(moved(values, 0, 310.0, 600.0), 5.0);
+    EXPECT_GT(values.over_time(0, "trips_so_far").at(600.0),
+              values.over_time(0, "trips_so_far").at(310.0) + 2.0);
+  }
+}
+
+TEST_F(ForagerLife, RespawnPutsEachBackToItsStart) {
+  const std::string respawned = with(with(team, "[\"A\", \"B\"]", "[\"B\"], respawn = true"),
+                                     "trails = {", "trails = { laying = \"completed\", ");
+  const Values values = run(with(respawned, "at-once", "at-event"));
+  for (AgentId id = 0; id < 3; ++id) {
+    const auto points = way(values, id);
+    EXPECT_LE(apart(points.at(0.0), a), 1.2);
+    const std::vector<double> arrivals = values.times(id, "arrived");
+    ASSERT_GE(arrivals.size(), 5U) << id;
+    EXPECT_EQ(arrivals.size(), values.scalar(id, "trips"));
+    std::vector<double> began = {0.0};
+    const std::vector<double> durations = values.by_trip(id, "trip_duration_s");
+    for (std::size_t i = 0; i < arrivals.size(); ++i) {
+      // It may wait for room, for nobody stands at A for long.
+      EXPECT_NEAR(arrivals[i] - durations[i], began.back(), i == 0 ? 1e-9 : 5.0) << id;
+      EXPECT_GE(durations[i], (11.5 - 1.2 - 1.0) / speed_m_per_s) << "from A's scatter to B";
+      began.push_back(arrivals[i]);
+      const double sampled_s = std::ceil(arrivals[i]) - 1.0;
+      if (sampled_s + 2.0 > 600.0) break;
+      EXPECT_NEAR(points.at(sampled_s).x_m, 16.25, 1.0 + speed_m_per_s) << "at B";
+      EXPECT_LE(apart(points.at(sampled_s + 2.0), a), 1.2 + 2.0 * speed_m_per_s)
+          << "and at A again";
+    }
+  }
+}
+
+TEST_F(ForagerLife, WhoWaitsForAllSetsOffWhenAllHaveArrivedOnce) {
+  const std::string waiting =
+      with(with(team, "[\"A\", \"B\"]", "[\"B\"], respawn = true, wait_for_all = true"),
+           "trails = {", "trails = { laying = \"completed\", ");
+  const Values values = run(with(waiting, "at-once", "at-event"));
+  double first_s = 600.0, all_s = 0.0;
+  for (AgentId id = 0; id < 3; ++id) {
+    const std::vector<double> arrivals = values.times(id, "arrived");
+    ASSERT_GE(arrivals.size(), 3U) << id;
+    first_s = std::min(first_s, arrivals[0]);
+    all_s = std::max(all_s, arrivals[0]);
+  }
+  EXPECT_LT(first_s, all_s - 5.0) << "of another seed all come at once";
+  for (AgentId id = 0; id < 3; ++id) {
+    const std::vector<double> arrivals = values.times(id, "arrived");
+    EXPECT_NEAR(arrivals[1] - values.by_trip(id, "trip_duration_s")[1], all_s, tick_s + 1e-9) << id;
+    // Nobody stirs before the last has come.
+    const double from_s = std::ceil(arrivals[0]) + 1.0, until_s = std::floor(all_s) - 1.0;
+    if (from_s < until_s) EXPECT_EQ(moved(values, id, from_s, until_s), 0.0) << id;
+  }
+}
+
+TEST_F(ForagerLife, WhoGoesToAndFroCanWaitForAllAsWell) {
+  const std::string from_anywhere =
+      with(with(team, "\"A\"", "\"anywhere\""), "[\"anywhere\"", "[\"A\"");
+  const Values values =
+      run(with(from_anywhere, "[\"A\", \"B\"]", "[\"A\", \"B\"], wait_for_all = true"));
+  // The first arrival ends no trip: trips lead from event to event.
+  for (AgentId id = 0; id < 3; ++id) EXPECT_GE(values.times(id, "arrived").size(), 2U) << id;
+  double began_s = 600.0;
+  for (AgentId id = 0; id < 3; ++id) {
+    began_s = values.times(id, "arrived")[0] - values.by_trip(id, "trip_duration_s")[0];
+    EXPECT_NEAR(began_s, values.times(0, "arrived")[0] - values.by_trip(0, "trip_duration_s")[0],
+                tick_s + 1e-9);
+  }
+}
+
+TEST_F(ForagerLife, NobodyEverStandsInAWallOrInAnother) {
+  const std::string cave = HEARSAY_SOURCE_DIR "/scenarios/lost/plans/cave.txt";
+  for (const std::string exploration : {"roam", "wall", "corridor"}) {
+    const std::string crowd = with(with(with(with(team, "plan.txt", cave), "\"A\"", "\"anywhere\""),
+                                        "[\"anywhere\"", "[\"A\""),
+                                   "count = 3", "count = 25");
+    const Values values = run(with(with(crowd, "duration_s = 600", "duration_s = 100"),
+                                   "\"corridor\"", "\"" + exploration + "\""));
+    const plan::Plan plan(plan::read_text(cave, 0.5));
+    const plan::WallIndex walls(plan);
+    std::vector<std::map<double, plan::Point>> ways;
+    double driven_m = 0.0;
+    for (AgentId id = 0; id < 25; ++id) {
+      ways.push_back(way(values, id));
+      driven_m += values.scalar(id, "distance_driven_m");
+      for (const auto& [time, p] : ways.back()) {
+        ASSERT_GE(plan::clearance(walls, p, 1.0), radius_m - 1e-6) << id << " at " << time;
+        for (AgentId other = 0; other < id; ++other) {
+          const double gap = apart(p, ways[static_cast<std::size_t>(other)].at(time));
+          ASSERT_GE(gap, 2.0 * radius_m - 1e-6) << id << ' ' << other << " at " << time;
+        }
+      }
+    }
+    EXPECT_GT(driven_m, 0.3 * 25 * 100.0 * speed_m_per_s) << exploration;
+  }
+}
+
+TEST_F(ForagerLife, ABlockedCorridorIsNotPassedAndOpensAgain) {
+  const std::string blocked = with(
+      team, "[radio]\n",
+      "barriers = [{ corner_m = [10, 0.5], opposite_m = [11, 3.5], from_s = 200, until_s = 320 "
+      "}]\n[radio]\n");
+  const Values values = run(blocked);
+  const auto rows = values.times(no_agent, "barrier");
+  EXPECT_EQ(rows, (std::vector<double>{200.0, 320.0}));
+  int passed = 0;
+  for (AgentId id = 0; id < 3; ++id) {
+    const auto points = way(values, id);
+    const double before_m = points.at(200.0).x_m;
+    ASSERT_TRUE(before_m < 10.0 - radius_m || before_m > 11.0 + radius_m) << "of another seed";
+    for (const auto& [time, p] : points) {
+      if (time < 200.0 || time > 320.0) continue;
+      const double past_m = before_m < 10.0 ? p.x_m - 10.0 : 11.0 - p.x_m;
+      EXPECT_LE(past_m, -radius_m + 1e-6) << id << " at " << time;
+    }
+    for (const auto& [time, p] : points) {
+      passed += time > 320.0 && (p.x_m > 10.5) != (before_m > 10.5);
+    }
+    EXPECT_GT(values.scalar(id, "recovery_s"), (11.5 - 2.0) / speed_m_per_s) << id;
+    EXPECT_LT(values.scalar(id, "recovery_s"), 280.0) << id;
+  }
+  EXPECT_GT(passed, 100);
+}
+
+TEST_F(ForagerLife, ASourceThatRunsDryIsVisitedAsOftenAsItHasUnits) {
+  const std::string dry = with(team, "[world.plan]",
+                               "[[world.sources]]\nname = \"B\"\nunits = 4\nevent_radius_m = 1.5\n"
+                               "[world.plan]");
+  const Values values = run(dry);
+  int visits = 0;
+  double last_s = 0.0;
+  for (const Event& event : values.events) {
+    if (event.kind != "arrived" || event.detail[0] != 'B') continue;
+    ++visits;
+    last_s = event.time_s;
+  }
+  EXPECT_EQ(visits, 4);
+  EXPECT_EQ(values.times(no_agent, "source"), std::vector<double>{last_s});
+}
+
+}  // namespace
+}  // namespace hearsay

@@ -25,6 +25,7 @@ import style
 import trips as trips_of
 
 ARROW = 1.05  # length in squares of --thin
+USUAL = 0.9  # the scale of d is made for such a share of the crumbs, if others are much farther
 WAYS = {
     "at-once": "against that of the robot that laid them",
     "completed": "which is that of the robot that laid them",
@@ -107,6 +108,15 @@ def thinned(crumbs, side_m):
     return kept[::-1]  # the nearest on top
 
 
+def scale_of(distances):
+    """(from distance to shade, whether some are beyond it): robots that are lost lay crumbs so far from the event
+    that all others would look alike."""
+    drawn = np.concatenate([np.array([0.0]), *distances])
+    usual = 1.1 * float(np.quantile(drawn, USUAL))
+    beyond = drawn.max() > 1.3 * usual > 0.0
+    return Normalize(0.0, (usual if beyond else drawn.max()) or 1.0), beyond
+
+
 def panel(axes, run, event, side_m, norm):
     floors.draw(axes, run.floor, run.at_s, run.at_s)
     crumbs = run.crumbs.get(event)
@@ -137,8 +147,9 @@ def draw(runs, by, events, side_m):
     height = (high + over) * rows + below + 0.05
     figure = style.new_figure(width, height)
     left = 0.55 / width
-    farthest = max((r.crumbs[e].d.max() for r in runs.values() for e in events if len(r.crumbs.get(e, ()))), default=1)
-    norm = Normalize(0.0, farthest or 1.0)
+    norm, beyond = scale_of(
+        [r.crumbs[e].d[thinned(r.crumbs[e], side_m)] for r in runs.values() for e in events if e in r.crumbs]
+    )
     for i, (label, event) in enumerate(places):
         row, column = divmod(i, columns)
         y = height - 0.05 - (row + 1) * (high + over) + 0.08
@@ -156,7 +167,8 @@ def draw(runs, by, events, side_m):
         axes.set_ylabel("y [m]" if column == 0 else "", labelpad=1)
         axes.set_xlabel("x [m]" if lowest else "", labelpad=1)
     place = (left + (wide * columns + 0.14 * (columns - 1) + 0.14) / width, y / height, 0.13 / width, high / height)
-    bar = figure.colorbar(ScalarMappable(norm, floors.shades()), cax=figure.add_axes(place))
+    bar = figure.colorbar(ScalarMappable(norm, floors.shades()), cax=figure.add_axes(place), extendfrac=0.04,
+                          extend="max" if beyond else "neither")
     bar.set_label(f"d: still to go [{next(iter(runs.values())).unit}]", fontsize=8.5, labelpad=3)
     bar.outline.set_linewidth(0.6)
     return figure, left

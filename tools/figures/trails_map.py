@@ -107,7 +107,7 @@ class Aged:
             axes.add_collection(LineCollection(pieces, colors=colors(norm(ages[:1] if same else ages)),
                                                linewidths=1.15, **look))
         for x, y in self.ends:
-            axes.plot(x, y, "o", mfc="white", mec=style.VERMILLION, mew=1.3, ms=4.6, zorder=6, clip_on=False)
+            axes.plot(x, y, "o", mfc="white", mec=style.VERMILLION, mew=1.3, ms=4.6, zorder=9, clip_on=False)
 
 
 class Iterations:
@@ -188,7 +188,7 @@ def draw(runs, by, moments):
     for label, run in runs.items():
         if by:
             y -= 0.25
-            figure.text(left, (y + 0.08) / height, panels.label_name(by, label), fontsize=10.5, fontweight="bold")
+            figure.text(left, (y - 0.06) / height, panels.label_name(by, label), fontsize=10.5, fontweight="bold")
         for i, at in enumerate(moments.at):
             if i % columns == 0:
                 y -= high + 0.4

@@ -157,6 +157,13 @@ class CrumbsOfATeam(WithForagers):
         self.assertEqual(crumbs_map.thinned(found, 1.0).tolist(), [3, 2, 1])
         self.assertEqual(crumbs_map.thinned(found, 0.0).tolist(), [3, 0, 2, 1])
 
+    def test_a_few_crumbs_of_lost_robots_do_not_take_all_shades(self):
+        norm, beyond = crumbs_map.scale_of([np.linspace(0.0, 100.0, 200), np.array([900.0])])
+        self.assertTrue(beyond and 90.0 < norm.vmax < 110.0)
+        norm, beyond = crumbs_map.scale_of([np.linspace(0.0, 100.0, 200)])
+        self.assertEqual((beyond, norm.vmax), (False, 100.0))
+        self.assertEqual(crumbs_map.scale_of([])[0].vmax, 1.0)
+
     def test_the_figure_has_a_panel_an_event_and_says_how_they_are_read(self):
         self.make_foragers()
         said = self.said("crumbs_map.py", "--at", "60", "--method", "plain", "--robots", "1")

@@ -8,6 +8,7 @@ from data import UserError
 
 # A way that leaps further than so many usual steps was not driven: the robot was carried.
 LEAP = 20.0
+ROUNDING_S = 1e-5  # of durations in events
 
 
 @dataclass
@@ -81,7 +82,7 @@ class Ways:
         """(t, x, y) from an instant to before another. Samples at the end of a trip may come after the robot was
         carried away; NaN lies where it leapt."""
         t, x, y = self.at[agent]
-        inside = (t >= from_s) & (t < to_s)
+        inside = (t >= from_s - ROUNDING_S) & (t < to_s - ROUNDING_S)
         t, x, y = t[inside], x[inside], y[inside]
         step = np.hypot(np.diff(x), np.diff(y))
         moved = step[step > 0.0]

@@ -285,7 +285,8 @@ def caption(levels, scales):
     ]
     if any(m.median for m in levels.metrics):
         over = "repetitions" if all(m.of_fleet for m in levels.metrics if m.median) else f"{each} and repetitions"
-        sentences.append(f"Times are medians over {over}, counting who never gets there.")
+        names = " and ".join(panels.metric_name(m.name).replace(" [s]", "") for m in levels.metrics if m.median)
+        sentences.append(f"Of {names}: medians over {over}, counting who never gets there.")
     if any(m.has_central for m in levels.metrics):
         sentences.append("Black: the central grid, which has every look once, mean over the lines' runs.")
     if any(axis.has_zero for axis in scales):

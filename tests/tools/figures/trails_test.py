@@ -298,7 +298,8 @@ class LevelsOfForagers(WithForagers):
         self.make_foragers()
         options = ("--over", "robots", "--by", "method", "--metrics", "trips;recovery_s", "--team")
         said = self.said("grid_levels.py", *options)
-        for text in ("search", "of all together", "never", "Arrows above a dotted line", "medians over repetitions"):
+        for text in ("search", "of all together", "never", "Arrows above a dotted line",
+                     "Of first arrival after the change: medians over repetitions"):
             self.assertIn(text, said)
         alone = self.said("grid_levels.py", "--over", "robots", "--method", "plain", "--metrics", "recovery_s")
         self.assertIn("never", alone)

@@ -87,6 +87,35 @@ inline Hit nearest(const WallIndex& walls, Point o, Point d, double range_m,
   return walk(walls, o, d, hit);
 }
 
+/// Shortens the rays that one disc is in the way of; others are not looked at.
+void shorten(Point from, double heading_rad, Point turn, const Fan& fan, const Disc& disc,
+             std::span<double> distances_m) {
+  const auto directions = fan.directions();
+  const int rays = static_cast<int>(directions.size());
+  const auto look = [&](int first, int last) {
+    for (int i = std::max(first, 0); i <= std::min(last, rays - 1); ++i) {
+      const Point& d = directions[static_cast<std::size_t>(i)];
+      const Point turned{turn.x_m * d.x_m - turn.y_m * d.y_m, turn.y_m * d.x_m + turn.x_m * d.y_m};
+      double& best = distances_m[static_cast<std::size_t>(i)];
+      best = meet(from, turned, disc, best);
+    }
+  };
+  const double dx = disc.at.x_m - from.x_m, dy = disc.at.y_m - from.y_m;
+  const double distance_m = std::sqrt(dx * dx + dy * dy);
+  if (distance_m <= disc.radius_m || fan.view_rad() == 0.0) return look(0, rays - 1);
+  const double bearing_rad = math::wrap_angle(math::atan2(dy, dx) - heading_rad);
+  const double half_rad = math::asin(disc.radius_m / distance_m);
+  const double rays_a_rad = rays / fan.view_rad();
+  // A whole turn on, the bearing is the same; one ray more on either side for rounding.
+  for (const double turn_rad : {-2.0 * math::pi, 0.0, 2.0 * math::pi}) {
+    const double middle = (bearing_rad + turn_rad) * rays_a_rad + 0.5 * (rays - 1);
+    const double side = half_rad * rays_a_rad + 1.0;
+    if (middle + side < 0.0 || middle - side > rays - 1) continue;
+    look(static_cast<int>(std::floor(std::max(middle - side, 0.0))),
+         static_cast<int>(std::ceil(std::min(middle + side, rays - 1.0))));
+  }
+}
+
 void check(const WallIndex& walls, Point from, double range_m) {
   require(walls.contains(from), "ray: begins outside the plan");
   require(range_m > 0.0 && std::isfinite(range_m), "ray: the range is above 0 and finite");
@@ -124,10 +153,12 @@ void scan(const WallIndex& walls, Point from, double heading_rad, const Fan& fan
   const auto directions = fan.directions();
   require(distances_m.size() == directions.size(), "ray: one distance a ray of the fan");
   const double c = math::cos(heading_rad), s = math::sin(heading_rad);
+  std::fill(distances_m.begin(), distances_m.end(), range_m);
+  for (const Disc& disc : discs) shorten(from, heading_rad, {c, s}, fan, disc, distances_m);
   for (std::size_t i = 0; i < directions.size(); ++i) {
     const Point& d = directions[i];
     const Point turned{c * d.x_m - s * d.y_m, s * d.x_m + c * d.y_m};
-    distances_m[i] = nearest(walls, from, turned, range_m, discs).distance_m;
+    distances_m[i] = walk(walls, from, turned, {distances_m[i], nothing}).distance_m;
   }
 }
 

@@ -36,6 +36,7 @@ class Fan {
   /// @throws BrokenInvariant unless rays ≥ 1 and 0 ≤ view ≤ 2π.
   Fan(int rays, double view_rad);
   std::span<const Point> directions() const { return directions_; }
+  double view_rad() const { return view_rad_; }
   /// The direction of one ray, relative to the sensor's.
   double angle_rad(std::size_t ray) const;
 

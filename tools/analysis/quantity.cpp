@@ -119,7 +119,8 @@ MetricRule metric_rule(const std::string& name, bool chi2_band) {
   }
   rule.rms = std::find(root_mean_squares.begin(), root_mean_squares.end(), name) !=
              root_mean_squares.end();
-  rule.median = name == "agree_again_s" || name == "alarms_found_s" || name == "first_arrival_s";
+  rule.median = name == "agree_again_s" || name == "alarms_found_s" || name == "first_arrival_s" ||
+                name == "recovery_s";
   rule.consistency = name.ends_with("nees");
   rule.each_subject = rule.consistency || name.starts_with("alarms_") ||
                       name.starts_with("alarm_") || name.starts_with("cells_");

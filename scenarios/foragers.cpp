@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "filters/trails/parameters.hpp"
+#include "scenarios/trails_checks.hpp"
 #include "sim/kernel/random.hpp"
 
 namespace hearsay {
@@ -52,16 +53,6 @@ RobotWorld::Start start_of(const RobotSpec& robot, const plan::Plan& plan) {
 
 const trails::ParameterSet& parameters_of(const TrailsSpec& spec) {
   return *trails::parameter_set(spec.parameters);
-}
-
-trails::Laying laying_of(const TrailsSpec& spec) {
-  if (!spec.laying) return parameters_of(spec).laying;
-  return *spec.laying == "at-once" ? trails::Laying::at_once : trails::Laying::completed;
-}
-
-trails::Distance distance_of(const TrailsSpec& spec) {
-  if (!spec.distance) return parameters_of(spec).distance;
-  return *spec.distance == "time" ? trails::Distance::time : trails::Distance::steps_without_turns;
 }
 
 double sense_radius_of(const TrailsSpec& spec) {

@@ -144,11 +144,11 @@ void describe(V& v, TrailsSpec& s) {
           "never");
   v.field("trail_end_s", s.trail_end_s, between(0.0, 1e9),
           "with no more distance to the event, in the unit of distances, it leaves the trail; "
-          "default, if the set says nothing: 0");
+          "default, if the set says nothing: it follows on");
   v.field("trail_end", s.trail_end, one_of({"explore", "search", "none"}),
           "what it does then: explore, search around the trail's end, or follow on");
   v.field("random_chance", s.random_chance, between(0.0, 1.0),
-          "of a random move in place of a crumb's, at first; default, if the set says nothing: 0");
+          "of a random move in place of a crumb's, at first; default, whatever the set says: 0");
   v.field("random_falls_by", s.random_falls_by, between(0.0, 1.0),
           "how much less after each arrival; default, if the set says nothing: 0");
   v.field("lanes", s.lanes, one_of({"none", "so-lost", "highway"}),

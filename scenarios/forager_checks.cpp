@@ -47,6 +47,7 @@ class ForagerChecker {
   void places() {
     if (!foragers_) return;
     for (const plan::Place& place : s_.world.plan->plan->places()) names_.push_back(place.name);
+    std::sort(names_.begin(), names_.end());
     check_barriers();
     check_sources();
     for (std::size_t i = 0; i < s_.agents.size(); ++i) {
@@ -136,10 +137,10 @@ void ForagerChecker::check_forager(const AgentSpec& agent, const KeyPath& path) 
   check_task(*agent.task, path["task"]);
   check_trails(file_, *agent.trails, path["trails"]);
   check_talk(agent, path["talk"]);
-  const KeyPath trails = path["trails"];
   crumbs_ += 1.0 * agent.count * agent.trails->crumbs_max;
-  if (crumbs_ > crumbs_max)
-    fail(trails["crumbs_max"], "more than 1e8 crumbs, for all foragers together");
+  if (crumbs_ > crumbs_max) {
+    fail(path["trails"], "more than 1e8 crumbs, for all foragers together; lower crumbs_max");
+  }
 }
 
 void ForagerChecker::check_body(const AgentSpec& agent, const KeyPath& path) const {
@@ -170,7 +171,7 @@ void ForagerChecker::check_robot(const AgentSpec& agent, const KeyPath& path) {
     fail(path["control_period_s"], "more than 1e9 steps in a run");
   }
   rays_ += 1.0 * agent.count * robot.rays;
-  if (rays_ > rays_max) fail(path["rays"], "more than 1e7 rays, for all foragers together");
+  if (rays_ > rays_max) fail(path, "more than 1e7 rays, for all foragers together; lower rays");
 }
 
 void ForagerChecker::check_task(const TaskSpec& task, const KeyPath& path) {
@@ -321,8 +322,10 @@ void ForagerChecker::check_places(const AgentSpec& agent, const KeyPath& path) c
 
 void ForagerChecker::check_place(const std::string& name, const KeyPath& path) const {
   if (std::find(names_.begin(), names_.end(), name) != names_.end()) return;
-  refuse(path, names_.empty() ? "the plan has no places"
-                              : "unknown place of the plan" + allowed_names(name, names_));
+  if (names_.empty()) refuse(path, "the plan has no places");
+  // All letters are near to one another.
+  refuse(path, "unknown place of the plan" +
+                   (name.size() > 1 ? allowed_names(name, names_) : "; allowed: " + join(names_)));
 }
 
 }  // namespace

@@ -69,27 +69,28 @@ struct RobotSpec {
 
 /// What a robot is after: the events in turn, over and over.
 struct TaskSpec {
-  std::vector<std::string> events;  ///< names of sources or places, 1 … 16
+  std::vector<std::string> events;  ///< names of sources or places, 1 … 16, none twice
   bool respawn = false;             ///< after each event it is carried back to its start
   bool wait_for_all = false;        ///< after its first arrival it waits until all had one
 };
 
 /// How a robot uses trails. What is not given is as its parameter set says, or as noted.
 struct TrailsSpec {
-  std::string parameters = "lost-2002";   ///< a name of trails::parameter_sets()
-  std::string navigation = "trails";      ///< | "explore" | "map"
-  std::string exploration = "roam";       ///< | "wall" | "corridor"
-  std::optional<std::string> laying;      ///< "at-once" | "completed"
-  std::optional<std::string> distance;    ///< "time" | "steps-without-turns"
-  std::optional<double> sense_radius_m;   ///< r > 0; none: 1 m
-  std::optional<double> interval_s;       ///< S > 0; none: 1 s
-  std::optional<int> trail_crumbs_max;    ///< L: of a temporary trail
-  std::optional<double> age_max_s;        ///< a > 0; none: for ever
-  std::optional<int> life_arrivals;       ///< 1 … 64; none: for ever
-  std::optional<double> trail_end_s;      ///< ≥ 0: with less d it leaves the trail
-  std::string trail_end = "explore";      ///< | "search" | "none"
-  std::optional<double> random_chance;    ///< local search: at first, 0 … 1; none: 0
-  std::optional<double> random_falls_by;  ///< ≥ 0
+  std::string parameters = "lost-2002";  ///< a name of trails::parameter_sets()
+  std::string navigation = "trails";     ///< | "explore" | "map"
+  std::string exploration = "roam";      ///< | "wall" | "corridor"
+  std::optional<std::string> laying;     ///< "at-once" | "completed"
+  std::optional<std::string> distance;   ///< "time" | "steps-without-turns"
+  std::optional<double> sense_radius_m;  ///< r > 0; none: 1 m
+  std::optional<double> interval_s;      ///< S > 0; none: 1 s
+  std::optional<int> trail_crumbs_max;   ///< L ≥ 1, "completed" only; none: 500
+  std::optional<double> age_max_s;       ///< a > 0; none: for ever
+  std::optional<int> life_arrivals;      ///< 1 … 64; none: for ever
+  std::optional<double> trail_end_s;     ///< ≥ 0, in the unit of d: with less it leaves the trail
+  std::string trail_end = "explore";     ///< | "search" | "none"
+  std::optional<double>
+      random_chance;  ///< local search: at first, 0 … 1; none: 0, whatever the set says
+  std::optional<double> random_falls_by;  ///< 0 … 1, with random_chance; none: 0
   std::string lanes = "none";             ///< | "so-lost" | "highway"
   std::optional<double> field_rad;        ///< Blinkered LOST: 0.1 … 2π
   std::string transform = "pessimistic";  ///< | "optimistic" | "as-is"

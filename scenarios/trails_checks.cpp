@@ -9,12 +9,6 @@ const trails::ParameterSet& set_of(const TrailsSpec& spec) {
   return *trails::parameter_set(spec.parameters);
 }
 
-double random_chance_of(const TrailsSpec& spec) {
-  if (spec.random_chance) return *spec.random_chance;
-  const auto& local_search = set_of(spec).local_search;
-  return local_search ? local_search->random_chance : 0.0;
-}
-
 // "found "completed"", and who says so.
 std::string found_laying(const TrailsSpec& spec) {
   const bool at_once = laying_of(spec) == trails::Laying::at_once;
@@ -69,7 +63,7 @@ void check_trails(const ScenarioUnderCheck& file, const TrailsSpec& spec, const 
   if (spec.trail_end_s && spec.trail_end == "none") {
     file.fail(path["trail_end_s"], "without effect with trail_end = \"none\"");
   }
-  if (spec.random_falls_by && random_chance_of(spec) == 0.0) {
+  if (spec.random_falls_by && spec.random_chance.value_or(0.0) == 0.0) {
     file.fail(path["random_falls_by"], "needs a random_chance above 0");
   }
   if (!spec.scale && spec.transform == "as-is") {

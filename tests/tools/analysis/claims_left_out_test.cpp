@@ -63,6 +63,25 @@ TEST(WhatIsLeftOut, MissingValuesAreCounted) {
   EXPECT_EQ(result.repetitions, 7);
 }
 
+TEST(WhatIsLeftOut, ASubjectThatTheFirstRunsHaveNotIsThereAllTheSame) {
+  Bed bed(10, 1);
+  bed.fill([](const Asked& asked, Rows& rows) {
+    for (int trip = 1; trip <= asked.repetition; ++trip) {
+      rows.series(5.0, 0, "trip_length_m", 10.0 * trip, std::to_string(trip));
+    }
+    return Outcome::finished;
+  });
+  Expectation fourth = at_most("trip_length_m", 40.5);
+  fourth.subjects = {"4"};
+  const ClaimResult result = bed.judge(fourth);
+  EXPECT_EQ(result.verdict, Verdict::reproduced);
+  EXPECT_NEAR(result.worst.estimate, 40.0, 1e-12);
+  EXPECT_EQ(result.repetitions, 7);
+  EXPECT_EQ(result.missing_values, 3u);
+  fourth.subjects = {"11"};
+  EXPECT_THROW(bed.judge(fourth), InputError);
+}
+
 /// Of ten repetitions three never agree: without them the times would be 1 … 7 s.
 struct Times : Bed {
   Times() : Bed(10, 1) {

@@ -242,7 +242,7 @@ TEST_F(Loader, AKindThatAProgramAddsIsKnown) {
   write("s.toml", "duration_s = 1\n[[agents]]\nkind = \"gossip\"\n");
   EXPECT_EQ(error_of([] { load_scenario("s.toml", {}, {}); }),
             "s.toml:3: agents[0].kind = \"gossip\": unknown; allowed: estimator, tracker, "
-            "localizer, explorer, source");
+            "localizer, explorer, forager, source");
   KnownNames names;
   names.agent_kinds.push_back("gossip");
   EXPECT_EQ(load_scenario("s.toml", {}, names).agents.at(0).kind, "gossip");

@@ -58,6 +58,19 @@ class BadScenario(Bed):
         file = self.write("bad.toml", text.replace("SPEED", "1e10"))
         self.bad("bad.toml:7: agents[0].exploration.speed_m_per_s: a cell (5.0 m) must take", "run", file)
 
+    def test_a_plan_that_is_wrong_or_not_there(self):
+        text = ("duration_s = 9\nworld = { plan = { file = \"floor.txt\" } }\n[[agents]]\nkind = \"forager\"\n"
+                "robot = { start = \"A\" }\ntask = { events = [\"A\", \"B\"] }\ntrails = {}\n")
+        file = self.write("scenario.toml", text)
+        self.bad("floor.txt: no such file", "check", file)
+        self.write("floor.txt", "#####\n#A.A#\n#####\n")
+        self.bad("floor.txt:2: column 4: place A is also in line 2; each letter is allowed once", "check", file)
+        self.write("floor.txt", "#####\n#A.C#\n#####\n")
+        self.bad('scenario.toml:6: agents[0].task.events[1] = "B": unknown place of the plan; allowed: A, C',
+                 "check", file)
+        self.write("floor.txt", "#####\n#A.B#\n#####\n")
+        self.good("check", file)
+
     def test_set_without_equals(self):
         self.bad("--set", "run", "ring.toml", "--set", "radio.rate_bps")
         self.bad("key=value", "run", "ring.toml", "--set", "radio.rate_bps")

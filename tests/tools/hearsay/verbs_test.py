@@ -136,6 +136,8 @@ class Verbs(Bed):
         units = {p["name"]: p["unit"] for p in bursts["parameters"]}
         self.assertEqual(units["radio.loss.mean_burst"], "packets")
         self.assertIn("sigma_along_m", self.good("list", "sensors"))
+        kinds = [kind["name"] for kind in json.loads(self.good("list", "agents", "--json"))["agents"]]
+        self.assertEqual(kinds, ["estimator", "tracker", "localizer", "explorer", "forager", "source"])
         recorded = {name for (name,) in self.scalars()}
         listed = {m["name"] for m in json.loads(self.good("list", "metrics", "--json"))["metrics"]}
         self.assertLessEqual(recorded, listed)

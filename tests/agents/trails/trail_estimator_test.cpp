@@ -285,6 +285,21 @@ TEST(TrailEstimator, WhoForgetsGetsItsOwnCrumbsBackFromOthers) {
   EXPECT_EQ(friendly.store().size(), 80U);
 }
 
+TEST(TrailEstimator, WhoIsCarriedElsewhereLaysNoWayBackFromThere) {
+  TrailEstimator robot(options(0));
+  go(robot, own, 0.0);
+  EXPECT_EQ(robot.lay(41.0, {}, 41.0, a), trails::Laid::crumb);
+  robot.carried();
+  for (int second = 42; second < 50; ++second) {
+    EXPECT_EQ(robot.lay(second, {}, second, a), trails::Laid::nothing);
+  }
+  EXPECT_EQ(robot.store().size(), 41U) << "what it knows stays";
+  visit(robot, a, own, 50.0);
+  EXPECT_EQ(robot.lay(51.0, {}, 51.0, b), trails::Laid::crumb);
+  EXPECT_FLOAT_EQ(robot.laid().distance_s, 1.0F);
+  EXPECT_EQ(robot.laid().event, a);
+}
+
 TEST(TrailEstimator, WhatIsNoPacketIsRefusedAndCounted) {
   TrailEstimator sender(options(0)), receiver = guide(options(1), own);
   go(sender, turned, 100.0);

@@ -134,15 +134,15 @@ TEST_F(TrailsWatched, TripsHaveTheLengthsAndTimesThatWereDriven) {
   watch(2, {.series = {"trips_so_far", "trip_length_m", "trip_duration_s"}});
   at(5, [&] {
     witness_->drove(0, 3.0, false, Doing::exploring, 5.0);
-    witness_->arrived(0, 0);  // not set off: no trip
+    EXPECT_FALSE(witness_->arrived(0, 0)) << "not set off: no trip";
     EXPECT_FALSE(witness_->all_arrived());
     witness_->sets_off(0);
   });
   at(30, [&] {
     witness_->drove(0, 4.0, true, Doing::following, 10.0);
     witness_->drove(0, 1.5, false, Doing::searching, 15.0);
-    witness_->arrived(0, 1);
-    witness_->arrived(0, 1);  // the trip is over
+    EXPECT_TRUE(witness_->arrived(0, 1));
+    EXPECT_FALSE(witness_->arrived(0, 1)) << "the trip is over";
     witness_->sets_off(0);
   });
   at(40, [&] { witness_->sets_off(1); });

@@ -208,6 +208,37 @@ TEST(TrailStore, CrumbsVanishAfterArrivalsAtTheirEvent) {
   EXPECT_EQ(store.size(), 1u);
 }
 
+TEST(TrailStore, ACrumbIsWornByAgeOrByArrivalsWhicheverIsMore) {
+  MetricStore by_age({.age_max_s = 200.0});
+  const Crumb crumb = crumb_at(0.0F, 7.0F, 10.0, 0);
+  by_age.merge(crumb, 10.0);
+  for (const double share : {0.0, 0.3, 1.0}) {
+    by_age.advance(10.0 + 200.0 * share);
+    EXPECT_DOUBLE_EQ(by_age.worn(crumb), share);
+  }
+  by_age.advance(1000.0);
+  EXPECT_EQ(by_age.worn(crumb), 1.0);
+  EXPECT_EQ(by_age.worn(crumb_at(0.0F, 7.0F, 1010.0, 0)), 0.0) << "by a clock that is ahead";
+
+  MetricStore both({.age_max_s = 200.0, .life_arrivals = 4});
+  both.merge(crumb, 10.0);
+  EXPECT_EQ(both.worn(crumb), 0.0);
+  both.merge(place_at(1, 0.0F, 9.0, 0), 20.0);   // before it was laid
+  both.merge(place_at(2, 0.0F, 15.0, 1), 20.0);  // of another event
+  EXPECT_DOUBLE_EQ(both.worn(crumb), 0.05) << "10 of 200 s";
+  both.merge(place_at(1, 0.0F, 20.0, 2), 20.0);
+  EXPECT_DOUBLE_EQ(both.worn(crumb), 0.25) << "one arrival of four";
+  both.advance(130.0);
+  EXPECT_DOUBLE_EQ(both.worn(crumb), 0.6);
+  both.merge(place_at(1, 0.0F, 30.0, 3), 130.0);
+  both.merge(place_at(1, 0.0F, 40.0, 4), 130.0);
+  EXPECT_DOUBLE_EQ(both.worn(crumb), 0.75);
+
+  MetricStore lasting({.age_max_s = never_s});
+  lasting.merge(crumb, 1e6);
+  EXPECT_EQ(lasting.worn(crumb), 0.0);
+}
+
 TEST(TrailStore, TheLatestPlaceOfAnEventReplacesTheOneBefore) {
   MetricStore store({});
   EXPECT_TRUE(store.merge(place_at(2, 1.0F, 10.0, 0), 50.0));

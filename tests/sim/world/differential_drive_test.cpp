@@ -83,6 +83,21 @@ TEST(Odometer, WithoutErrorsItKnowsTheWay) {
   EXPECT_EQ(odometer.pose().heading_rad, truth.heading_rad);
 }
 
+TEST(Odometer, WhoIsToldWhereItIsGoesOnFromThereWithItsErrors) {
+  Odometer told({.forward_bias = 0.2, .turn_bias = 0.3}, 1, 4);
+  Odometer fresh({.start = {3.0, -2.0, 2.5}, .forward_bias = 0.2, .turn_bias = 0.3}, 1, 4);
+  told.drove({0.7, 0.4}, 3.0);
+  told.set({3.0, -2.0, 2.5});
+  EXPECT_EQ(told.pose().x_m, 3.0);
+  EXPECT_EQ(told.pose().y_m, -2.0);
+  EXPECT_EQ(told.pose().heading_rad, 2.5);
+  EXPECT_NE(told.forward_bias(), 0.0);
+  for (Odometer* odometer : {&told, &fresh}) odometer->drove({0.5, -0.3}, 2.0);
+  EXPECT_EQ(told.pose().x_m, fresh.pose().x_m);
+  EXPECT_EQ(told.pose().y_m, fresh.pose().y_m);
+  EXPECT_EQ(told.pose().heading_rad, fresh.pose().heading_rad);
+}
+
 TEST(Odometer, ABiasIsDrawnOnceAndIsInProportion) {
   const Odometer::Options options{.forward_bias = 0.03, .turn_bias = 0.05};
   double sum = 0.0, squares = 0.0;

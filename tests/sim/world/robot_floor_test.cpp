@@ -64,6 +64,23 @@ TEST(RobotFloor, ThereMustBeRoom) {
   EXPECT_THROW(floor.pose(2), BrokenInvariant);
 }
 
+TEST(RobotFloor, HasRoomWhereADiscTouchesNothing) {
+  const WallIndex walls(room());
+  RobotFloor floor(walls, {.radius_m = 0.25});
+  const int robot = floor.add({1.0, 1.0, 0.0});
+  for (const double off : {-1e-6, 1e-6}) {
+    const bool free = off > 0.0;
+    EXPECT_EQ(floor.has_room({1.0 + 0.3 + off, 1.4, 0.0}), free) << "the other, 0.5 m away";
+    EXPECT_EQ(floor.has_room({0.25 + off, 4.0, 0.0}), free) << "the side of the plan";
+    EXPECT_EQ(floor.has_room({4.25 + off, 4.0, 0.0}), free) << "the wall";
+    EXPECT_EQ(floor.has_room({4.15, 1.8 - off, 0.0}), free) << "its end, by 15 and 20 cm";
+  }
+  EXPECT_TRUE(floor.has_room({1.2, 1.0, 0.0}, robot)) << "itself is no hindrance";
+  EXPECT_FALSE(floor.has_room({1.2, 1.0, 0.0}));
+  EXPECT_FALSE(floor.has_room({-1.0, 1.0, 0.0}));
+  EXPECT_FALSE(floor.has_room({5.0, 1.0, std::nan("")}));
+}
+
 TEST(RobotFloor, AScanSeesWallsAndOthersButNotItself) {
   const WallIndex walls(room());
   RobotFloor floor(walls, {.radius_m = 0.25});

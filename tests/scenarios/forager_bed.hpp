@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -66,10 +67,11 @@ class ForagerBed : public InTempDirectory {
   };
 
   Values run(const std::string& text, std::uint64_t seed = 3) {
-    write("s.toml", text);
-    Scenario scenario = load_scenario("s.toml", {}, known_names(catalog_));
-    scenario.record.series = series_;
-    const auto prepared = prepare(std::move(scenario), catalog_, logs_);
+    std::string names;
+    for (const std::string& name : series_) names += (names.empty() ? "\"" : ", \"") + name + '"';
+    write("s.toml", with(text, "[record]\n", "[record]\nseries = [" + names + "]\n"));
+    const auto prepared =
+        prepare(load_scenario("s.toml", {}, known_names(catalog_)), catalog_, logs_);
     DigestedBytes digest;
     hearsay::Run run(prepared, catalog_, {.seed = seed, .digest = &digest});
     const RunEnd end = run.run();

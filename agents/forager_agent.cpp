@@ -141,7 +141,7 @@ ForagerAgent::Decision ForagerAgent::by_trails(const Pilot::Senses& senses) {
       decision = {pilot_.explore(senses, draws_), Doing::exploring};
       break;
     case TrailFollower::Way::follow:
-      decision = {pilot_.towards(senses, target, draws_), Doing::following};
+      decision = {pilot_.through(senses, target, draws_), Doing::following};
       break;
     case TrailFollower::Way::search:
       decision = {pilot_.search(senses, target, options_.search_radius_m, draws_),
@@ -170,7 +170,7 @@ ForagerAgent::Decision ForagerAgent::by_map() {
   if (map_next_ >= map_way_.points.size()) {
     return {pilot_.explore(senses, draws_), Doing::exploring};
   }
-  const drive::Command command = pilot_.towards(senses, map_way_.points[map_next_], draws_);
+  const drive::Command command = pilot_.through(senses, map_way_.points[map_next_], draws_);
   return {command, pilot_.panicking() ? Doing::panicking : Doing::following};
 }
 

@@ -148,10 +148,11 @@ std::optional<FreeDirections::Choice> FreeDirections::nearest(const Wish& wish) 
   return best;
 }
 
-std::optional<double> FreeDirections::first(double from_rad, bool counter_clockwise) const {
+std::optional<double> FreeDirections::first(bool free_one, double from_rad,
+                                            bool counter_clockwise) const {
   int s = sector(from_rad);
   for (int i = 0; i < sectors; ++i) {
-    if (free(s)) return bearing_rad(s);
+    if (free(s) == free_one) return bearing_rad(s);
     s = counter_clockwise ? (s + 1) % sectors : (s + sectors - 1) % sectors;
   }
   return std::nullopt;

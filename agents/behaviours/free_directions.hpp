@@ -63,8 +63,9 @@ class FreeDirections {
   /// to the left, so that two who meet pass each other on the right), plus a share of how far off
   /// the last one and of how far off the heading. The wish itself, if it is free or not in view.
   std::optional<Choice> nearest(const Wish& wish) const;
-  /// The first free direction from a bearing on, counter-clockwise or clockwise.
-  std::optional<double> first(double from_rad, bool counter_clockwise) const;
+  /// The first direction from a bearing on, counter-clockwise or clockwise, that is free, or that
+  /// is blocked.
+  std::optional<double> first(bool free_one, double from_rad, bool counter_clockwise) const;
   /// A free direction that is seen, at random in proportion to how far it is open there.
   std::optional<double> any(Stream& draws) const;
   /// Of all that is seen, free or not, the direction in which it is farthest to anything.

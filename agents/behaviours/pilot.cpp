@@ -17,11 +17,17 @@ constexpr double ahead_s = 0.4;                     ///< the room ahead is never
 constexpr double keeps_m = 0.01;                    ///< and not to the last
 constexpr double moves_m = 0.05;                    ///< less is no motion
 constexpr double turns_rad = 0.3;                   ///< neither is less turning
+constexpr double aside_rad = 0.2;                   ///< so far off its wish it avoids something
+constexpr double pushing_share = 0.01;              ///< of the way it was told to make
 constexpr double leg_min_s = 0.5, leg_max_s = 2.0;  ///< of a panic
 
 double way(const drive::Pose& from, plan::Point to) {
   const double dx = to.x_m - from.x_m, dy = to.y_m - from.y_m;
   return std::sqrt(dx * dx + dy * dy);
+}
+
+double bearing_of(const drive::Pose& from, plan::Point to) {
+  return math::wrap_angle(math::atan2(to.y_m - from.y_m, to.x_m - from.x_m) - from.heading_rad);
 }
 
 bool finite(const drive::Pose& p) {
@@ -87,10 +93,17 @@ void Pilot::begin(const Senses& senses, Doing doing) {
   const bool paused = !anew && senses.now_s - last_s_ > options_.panic_after_s;
   period_s_ = anew || paused ? 0.0 : std::max(senses.now_s - last_s_, 0.0);
   last_s_ = senses.now_s;
+  // Wheels that stand though they were told to turn: something is there that it does not see.
+  const double told_m = told_m_per_s_ * period_s_;
+  pushing_ = told_m > 0.0 &&
+             way(last_at_, {senses.odometry.x_m, senses.odometry.y_m}) < pushing_share * told_m;
+  last_at_ = senses.odometry;
+  told_m_per_s_ = 0.0;
   if (anew || paused) {
     rest(senses);
     chosen_rad_.reset();
     spin_ = 0.0;
+    aside_ = false;
   }
   if (doing != doing_) {
     wandering_.restart();
@@ -114,6 +127,16 @@ drive::Command Pilot::towards(const Senses& senses, plan::Point target, Stream& 
   begin(senses, Doing::towards);
   if (panicking_) return panic(senses, draws);
   return go(senses, target);
+}
+
+drive::Command Pilot::through(const Senses& senses, plan::Point target, Stream& draws) {
+  require(std::isfinite(target.x_m) && std::isfinite(target.y_m), "pilot: a target is finite");
+  begin(senses, Doing::towards);
+  if (panicking_) return panic(senses, draws);
+  const double distance = way(senses.odometry, target);
+  if (distance < there_m) return {};
+  return steer(senses, bearing_of(senses.odometry, target),
+               std::max(distance, options_.look_ahead_m));
 }
 
 drive::Command Pilot::explore(const Senses& senses, Stream& draws) {
@@ -148,16 +171,16 @@ drive::Command Pilot::go(const Senses& senses, plan::Point target) {
     rest(senses);
     return {};
   }
-  const double direction =
-      math::atan2(target.y_m - senses.odometry.y_m, target.x_m - senses.odometry.x_m);
-  return steer(senses, math::wrap_angle(direction - senses.odometry.heading_rad), distance);
+  return steer(senses, bearing_of(senses.odometry, target), distance);
 }
 
 drive::Command Pilot::panic(const Senses& senses, Stream& draws) {
   const double heading = senses.odometry.heading_rad;
   if (senses.now_s >= leg_until_s_) {
     eyes_.block(cares_.back().clearance_m, cares_.back().look_m);
-    const double drawn = eyes_.any(draws).value_or(draws.uniform(-math::pi, math::pi));
+    // What it sees is no guide to who touches what he does not see.
+    const double anywhere = draws.uniform(-math::pi, math::pi);
+    const double drawn = pushing_ ? anywhere : eyes_.any(draws).value_or(anywhere);
     leg_rad_ = math::wrap_angle(heading + drawn);
     leg_until_s_ = senses.now_s + draws.uniform(leg_min_s, leg_max_s) +
                    std::fabs(drawn) / options_.turn_rad_per_s;
@@ -180,11 +203,27 @@ std::optional<FreeDirections::Choice> Pilot::choose(const FreeDirections::Wish& 
   return best;
 }
 
+bool Pilot::aside(const Senses& senses) {
+  const bool past =
+      way(aside_at_, {senses.odometry.x_m, senses.odometry.y_m}) > 4.0 * options_.radius_m;
+  const double around_s = 2.0 * math::pi / options_.turn_rad_per_s;
+  if (past || senses.now_s - aside_s_ > options_.panic_after_s + around_s) aside_ = false;
+  return aside_;
+}
+
 drive::Command Pilot::steer(const Senses& senses, double bearing_rad, double distance_m) {
   const double heading = senses.odometry.heading_rad;
   FreeDirections::Wish wish{.bearing_rad = bearing_rad};
   if (chosen_rad_) wish.before_rad = *chosen_rad_ - heading;
+  const bool in_view = eyes_.seen(FreeDirections::sector(bearing_rad));
+  if (!in_view && aside(senses)) wish.bearing_rad = wish.before_rad.value_or(0.0);
   const auto choice = choose(wish, distance_m);
+  if (in_view) {
+    const double off = choice ? choice->bearing_rad - bearing_rad : math::pi;
+    aside_ = std::fabs(math::wrap_angle(off)) > aside_rad;
+    aside_at_ = senses.odometry;
+    aside_s_ = senses.now_s;
+  }
   if (!choice) {
     if (spin_ == 0.0) spin_ = eyes_.most_open() < 0.0 ? -1.0 : 1.0;
     chosen_rad_.reset();
@@ -195,7 +234,7 @@ drive::Command Pilot::steer(const Senses& senses, double bearing_rad, double dis
   return turn_and_drive(choice->bearing_rad, distance_m);
 }
 
-drive::Command Pilot::turn_and_drive(double bearing_rad, double distance_m) const {
+drive::Command Pilot::turn_and_drive(double bearing_rad, double distance_m) {
   // Never farther within a period than it sees by now.
   const double gain = std::min(turns_per_s, period_s_ > 0.0 ? 0.9 / period_s_ : turns_per_s);
   const double turn =
@@ -205,7 +244,9 @@ drive::Command Pilot::turn_and_drive(double bearing_rad, double distance_m) cons
   const double time = std::max(ahead_s, 1.5 * period_s_);
   const double room = std::max(eyes_.ahead_m(options_.radius_m) - keeps_m, 0.0);
   const double speed = std::min({options_.speed_m_per_s * share, room / time, distance_m / time});
-  return {speed, turn};
+  // A robot that is stopped does not turn either, but one that stands does.
+  told_m_per_s_ = pushing_ && std::fabs(turn) > 0.0 ? 0.0 : speed;
+  return {told_m_per_s_, turn};
 }
 
 double Pilot::free_m(const Senses& senses, double bearing_rad) const {

@@ -4,7 +4,9 @@
 // It goes in the free direction nearest to the wanted one (free_directions.hpp), slower the more it
 // has to turn and the less room there is ahead. It keeps a margin from obstacles where there is
 // room; where that would lead it far off its way, or nowhere, it makes do with less, and looks less
-// far ahead. Where nothing is free it turns on the spot towards the more open side.
+// far ahead. Where nothing is free it turns on the spot towards the more open side. Where it does
+// not see it turns, but does not drive; and it does not turn back to what it goes around before it
+// is past it.
 //
 // A robot that wants to drive and does not move panics, as those of LOST do (R. Vaughan, K. Støy,
 // G. Sukhatme, M. Matarić, IEEE Trans. Robotics and Automation 18(5), 2002): for a while it makes
@@ -42,8 +44,8 @@ class Pilot {
     double look_ahead_m = 1.5;    ///< what is farther is not in the way
     double panic_after_s = 2.0;   ///< without motion
     double panic_s = 6.0;         ///< how long a panic lasts
-    double hold_s = 10.0;         ///< mean time for which a heading is held that leads nowhere
-    double follow_s = 60.0;       ///< mean time for which a wall is followed
+    double hold_s = 20.0;         ///< mean time for which a heading is held that leads nowhere
+    double follow_s = 40.0;  ///< mean time for which walls or corridors are followed at a stretch
     Exploring exploring = Exploring::roam;
   };
   /// `fan` must outlive it. @throws BrokenInvariant for options out of range, a fan without a field
@@ -61,6 +63,8 @@ class Pilot {
 
   /// Towards a point in the frame of the odometry, around what is in the way.
   drive::Command towards(const Senses& senses, plan::Point target, Stream& draws);
+  /// The same at full speed, past it: a waypoint. Who stands at one and gets no other panics.
+  drive::Command through(const Senses& senses, plan::Point target, Stream& draws);
   /// Anywhere, to see what is there.
   drive::Command explore(const Senses& senses, Stream& draws);
   /// From point to point, drawn within `radius_m` > 0 of a centre in the frame of the odometry.
@@ -90,7 +94,9 @@ class Pilot {
   drive::Command panic(const Senses& senses, Stream& draws);
   drive::Command steer(const Senses& senses, double bearing_rad, double distance_m);
   std::optional<FreeDirections::Choice> choose(const FreeDirections::Wish& wish, double distance_m);
-  drive::Command turn_and_drive(double bearing_rad, double distance_m) const;
+  /// Whether it still goes around something that was in view, and in the way.
+  bool aside(const Senses& senses);
+  drive::Command turn_and_drive(double bearing_rad, double distance_m);
 
   Options options_;
   FreeDirections eyes_;
@@ -99,8 +105,14 @@ class Pilot {
 
   Doing doing_ = Doing::nothing;
   double last_s_ = 0.0, period_s_ = 0.0;
+  drive::Pose last_at_;
+  double told_m_per_s_ = 0.0;         // at the last call
+  bool pushing_ = false;              // it did not get on since, though told to
   std::optional<double> chosen_rad_;  // direction last taken, in the frame of the odometry
   double spin_ = 0.0;                 // 1, −1: it turns on the spot until something is free
+  bool aside_ = false;                // it had to go another way than it wished
+  drive::Pose aside_at_;
+  double aside_s_ = 0.0;
 
   drive::Pose place_;  // where it was when it last moved
   double moved_s_ = 0.0, turned_s_ = 0.0;

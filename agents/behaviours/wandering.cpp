@@ -13,10 +13,12 @@ namespace {
 constexpr double blocked_rad = 0.8;
 /// Walls are looked for from a little behind the side on.
 constexpr double side_rad = 1.9;
+constexpr double other_side_rad = 0.6;  ///< and so far to the other side
 /// Around the end of a wall it drives a curve: more would be to turn on the spot.
 constexpr double curve_rad = 0.5;
 /// What is farther behind is where it came from.
 constexpr double ahead_rad = 2.0;
+constexpr double hall_rad = 3.0;    ///< with more free around it is in no corridor
 constexpr double wide_rad = 1.4;    ///< an opening that is no corridor any more
 constexpr double ended_rad = 0.35;  ///< a branch has ended from which it is farther to the next
 constexpr double between_branches_m = 1.5;
@@ -35,24 +37,26 @@ Wandering::Wandering(const Options& options) : options_(options) {
   }
 }
 
-void Wandering::restart() {
-  heading_rad_.reset();
-  side_ = Side::none;
-  side_chosen_ = false;
-  branches_ = 0;
-}
+void Wandering::restart() { started_ = false; }
 
 double Wandering::bearing(FreeDirections& eyes, const drive::Pose& odometry, double now_s,
                           Stream& draws) {
-  switch (options_.manner) {
-    case Manner::wall:
-      return follow(eyes, odometry, now_s, draws);
-    case Manner::corridor:
-      return along(eyes, odometry, now_s, draws);
-    case Manner::roam:
-      break;
+  if (!started_ || (options_.manner != Manner::roam && now_s >= phase_until_s_)) {
+    roaming_ = options_.manner == Manner::roam || (started_ && !roaming_);
+    const double mean_s = roaming_ ? options_.hold_s : options_.follow_s;
+    phase_until_s_ = now_s + draws.exponential(1.0 / mean_s);
+    left_ = draws.bernoulli(0.5);
+    wall_at_.reset();
+    branches_ = 0;
+    decided_at_ = odometry;
+    heading_rad_.reset();
+    if (!started_) heading_rad_ = odometry.heading_rad;
+    until_s_ = now_s + draws.exponential(1.0 / options_.hold_s);
+    started_ = true;
   }
-  return roam(eyes, odometry, now_s, draws);
+  if (roaming_) return roam(eyes, odometry, now_s, draws);
+  return options_.manner == Manner::wall ? follow(eyes, odometry, now_s, draws)
+                                         : along(eyes, odometry, now_s, draws);
 }
 
 double Wandering::roam(FreeDirections& eyes, const drive::Pose& odometry, double now_s,
@@ -74,7 +78,7 @@ double Wandering::roam(FreeDirections& eyes, const drive::Pose& odometry, double
 
 bool Wandering::beside(const FreeDirections& eyes) const {
   const double within = options_.clearance_m + 0.5;
-  const int middle = FreeDirections::sector(side_ == Side::left ? 0.5 * math::pi : -0.5 * math::pi);
+  const int middle = FreeDirections::sector(left_ ? 0.5 * math::pi : -0.5 * math::pi);
   constexpr int spread = FreeDirections::sectors / 6;
   for (int i = -spread; i <= spread; ++i) {
     const int s = (middle + i + FreeDirections::sectors) % FreeDirections::sectors;
@@ -85,17 +89,6 @@ bool Wandering::beside(const FreeDirections& eyes) const {
 
 double Wandering::follow(FreeDirections& eyes, const drive::Pose& odometry, double now_s,
                          Stream& draws) {
-  if (!side_chosen_ || now_s >= side_until_s_) {
-    // In turn: a wall at one of the sides, and a while in the open.
-    const bool open = side_chosen_ && side_ != Side::none;
-    const bool left = draws.bernoulli(0.5);
-    side_ = open ? Side::none : left ? Side::left : Side::right;
-    side_until_s_ = now_s + draws.exponential(1.0 / (open ? options_.hold_s : options_.follow_s));
-    side_chosen_ = true;
-    wall_at_.reset();
-    heading_rad_.reset();
-  }
-  if (side_ == Side::none) return roam(eyes, odometry, now_s, draws);
   if (beside(eyes)) wall_at_ = odometry;
   // Around the end of a wall it is lost for less than this.
   const double lost_m = 3.0 * options_.clearance_m;
@@ -103,9 +96,17 @@ double Wandering::follow(FreeDirections& eyes, const drive::Pose& odometry, doub
   heading_rad_ = odometry.heading_rad;
   until_s_ = now_s + options_.hold_s;
   eyes.block(options_.clearance_m, std::min(options_.look_ahead_m, 2.5 * options_.clearance_m));
-  const bool left = side_ == Side::left;
-  const double first = eyes.first(left ? side_rad : -side_rad, !left).value_or(math::pi);
-  return left ? std::min(first, curve_rad) : std::max(first, -curve_rad);
+  const double sign = left_ ? 1.0 : -1.0, curve = sign * curve_rad;
+  double edge = sign * side_rad;
+  if (eyes.free(FreeDirections::sector(edge))) {
+    // Nothing right at its side: what is ahead is the wall that it turns its side to; or there is
+    // an end to go around.
+    const auto wall = eyes.first(false, edge, !left_);
+    if (!wall || *wall * sign < -other_side_rad || *wall * sign > side_rad) return curve;
+    edge = *wall;
+  }
+  const double along = eyes.first(true, edge, !left_).value_or(math::pi);
+  return left_ ? std::min(along, curve) : std::max(along, curve);
 }
 
 void Wandering::find_openings(const FreeDirections& eyes) {
@@ -149,6 +150,10 @@ double Wandering::along(FreeDirections& eyes, const drive::Pose& odometry, doubl
     find_openings(eyes);
     if (openings_count_ > 0) break;
   }
+  double open_rad = 0.0;
+  for (std::size_t i = 0; i < openings_count_; ++i) open_rad += openings_[i].width_rad;
+  if (open_rad > hall_rad) return roam(eyes, odometry, now_s, draws);
+  until_s_ = now_s + options_.hold_s;
   double held = heading_rad_ ? math::wrap_angle(*heading_rad_ - odometry.heading_rad) : 0.0;
   if (openings_count_ == 0) held = eyes.most_open();  // in a crowd
   const Opening* chosen = nullptr;
@@ -167,19 +172,18 @@ double Wandering::along(FreeDirections& eyes, const drive::Pose& odometry, doubl
   const bool junction = branches > std::max(branches_, 1) && moved;
   if (moved) branches_ = branches;
   const bool ended = nearest_rad > ended_rad;
-  if (ended && branches == 0 && heading_rad_ && now_s < until_s_) {
+  if (ended && branches == 0 && heading_rad_) {
     // To the end of a dead end, for there may be a way around its corner.
-    eyes.block(options_.clearance_m, std::min(options_.look_ahead_m, 3.0 * options_.clearance_m));
+    eyes.block(options_.clearance_m, std::min(options_.look_ahead_m, 2.0 * options_.clearance_m));
     const auto on = eyes.nearest({held, std::nullopt});
     if (on && std::fabs(math::wrap_angle(on->bearing_rad - held)) < ended_rad) return held;
   }
-  if (!heading_rad_ || junction || ended || now_s >= until_s_) {
+  if (!heading_rad_ || junction || ended) {
     chosen = branch(held, branches, draws);
     // In an open place there is a branch everywhere.
     if (chosen != nullptr) held = draws.uniform(chosen->from_rad(), chosen->to_rad());
     decided_at_ = odometry;
     branches_ = branches;
-    until_s_ = now_s + draws.exponential(1.0 / (3.0 * options_.hold_s));
   }
   double bearing = held;
   if (chosen != nullptr) {

@@ -3,10 +3,11 @@
 // Three manners. To roam is to hold a heading for an exponentially distributed time, or until it is
 // blocked, and to draw another one then, in proportion to how far it is open that way. To follow
 // walls is to keep one as near at a side, drawn at random, as the clearance allows, so that a robot
-// goes around rooms and through their doors; and to roam in between, since a wall may be an
-// island's. To explore corridors is what the robots of LOST do (R. Vaughan, K. Støy, G. Sukhatme,
-// M. Matarić, IEEE Trans. Robotics and Automation 18(5), 2002): to head for what is open, to take a
-// branch at random where there are several, and to turn around where it ends.
+// goes around rooms and through their doors. To explore corridors is what the robots of LOST do
+// (R. Vaughan, K. Støy, G. Sukhatme, M. Matarić, IEEE Trans. Robotics and Automation 18(5), 2002):
+// to head for what is open, to take a branch at random where there are several, and to turn around
+// where it ends. Who follows walls or corridors roams in between: a wall may be an island's, and
+// not every place lies at a corridor.
 #pragma once
 
 #include <array>
@@ -27,18 +28,17 @@ class Wandering {
     double clearance_m = 0.35;  ///< > 0, from the middle of the robot
     double look_ahead_m = 1.5;  ///< > 0
     double range_m = 5.0;       ///< > 0, of the scanner
-    double hold_s = 10.0;       ///< > 0, mean time that a heading is held
-    double follow_s = 60.0;     ///< > 0, mean time that a wall is followed
+    double hold_s = 20.0;       ///< > 0, mean time that a heading is held
+    double follow_s = 40.0;  ///< > 0, mean time that walls or corridors are followed at a stretch
   };
   explicit Wandering(const Options& options);
 
   /// The bearing to head for. `eyes` has looked; what it blocks is changed.
   double bearing(FreeDirections& eyes, const drive::Pose& odometry, double now_s, Stream& draws);
-  /// It begins anew: a heading, a side and a branch are chosen again.
+  /// It begins anew: where it heads by then is held at first, a side is drawn again.
   void restart();
 
  private:
-  enum class Side : std::uint8_t { none, left, right };
   /// Neighbouring directions that are free.
   struct Opening {
     double middle_rad, width_rad;
@@ -54,12 +54,12 @@ class Wandering {
   const Opening* branch(double held_rad, int branches, Stream& draws) const;
 
   Options options_;
-  std::optional<double> heading_rad_;  // that is held, in the frame of the odometry
-  double until_s_ = 0.0;               // it is held
-  Side side_ = Side::none;
-  double side_until_s_ = 0.0;
-  bool side_chosen_ = false;
-  std::optional<drive::Pose> wall_at_;  // where it last had the wall at its side
+  bool started_ = false, roaming_ = false;
+  double phase_until_s_ = 0.0;          // it roams, or does not
+  std::optional<double> heading_rad_;   // that is held, in the frame of the odometry
+  double until_s_ = 0.0;                // it is held while it roams
+  bool left_ = false;                   // where it has its wall
+  std::optional<drive::Pose> wall_at_;  // where it last had it there
   drive::Pose decided_at_;              // where it last chose among branches
   int branches_ = 0;
   std::array<Opening, FreeDirections::sectors / 2> openings_{};

@@ -125,23 +125,29 @@ void ForagerAgent::set_off() {
 ForagerAgent::Decision ForagerAgent::decide() {
   if (options_.navigation == Navigation::map) return by_map();
   const Pilot::Senses senses{now_s(), scan_m_, odometer_.pose()};
-  if (options_.navigation == Navigation::trails) return by_trails(senses);
+  // Tasks that begin together: until all have come by a way of their own, none follows another's.
+  const bool alone = options_.wait_for_all && !witness_.all_arrived();
+  if (options_.navigation == Navigation::trails && !alone) return by_trails(senses);
   return {pilot_.explore(senses, draws_), Doing::exploring};
 }
 
 ForagerAgent::Decision ForagerAgent::by_trails(const Pilot::Senses& senses) {
   const double free_left_m =
       std::max(0.0, pilot_.free_m(senses, 0.5 * math::pi) - options_.pilot.radius_m);
-  const TrailFollower::Choice choice = follower_.choose(
-      estimator_.store(), goal(), odometer_.pose(), now_s(), free_left_m, draws_);
+  const TrailFollower::Choice choice =
+      follower_.choose(estimator_.store(), goal(), odometer_.pose(), now_s(), free_left_m, draws_);
   const plan::Point target{choice.target.x_m, choice.target.y_m};
+  // Who does not know what to do at the end of a trail is at home there.
+  const bool stays = options_.follower.trail_end == TrailFollower::TrailEnd::none;
   Decision decision;
   switch (choice.way) {
     case TrailFollower::Way::explore:
       decision = {pilot_.explore(senses, draws_), Doing::exploring};
       break;
     case TrailFollower::Way::follow:
-      decision = {pilot_.through(senses, target, draws_), Doing::following};
+      decision = {
+          stays ? pilot_.towards(senses, target, draws_) : pilot_.through(senses, target, draws_),
+          Doing::following};
       break;
     case TrailFollower::Way::search:
       decision = {pilot_.search(senses, target, options_.search_radius_m, draws_),

@@ -46,7 +46,7 @@ class ForagerAgent final : public Agent {
     double clock_offset_s = 0.0;        ///< what its clock is ahead
     std::vector<trails::EventId> task;  ///< after each of them in turn, over and over; ≥ 1
     bool respawn = false;               ///< an event over, it is put back to its start
-    bool wait_for_all = false;          ///< after its first trip, until all have had one
+    bool wait_for_all = false;          ///< after its first trip, found without trails, until all had one
     Navigation navigation = Navigation::trails;
     Pilot::Options pilot;
     TrailFollower::Options follower;

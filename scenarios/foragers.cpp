@@ -25,8 +25,8 @@ RobotWorld::Source source_of(const Scenario& scenario, const std::string& name) 
   if (spec->units) source.units = static_cast<std::uint64_t>(*spec->units);
   source.radius_m = spec->event_radius_m.value_or(source.radius_m);
   for (const SourceMoveSpec& move : spec->moves) {
-    source.moves.push_back({Time::at(Duration::seconds(move.at_s.value())), plan.place(move.place),
-                            move.place});
+    source.moves.push_back(
+        {Time::at(Duration::seconds(move.at_s.value())), plan.place(move.place), move.place});
   }
   return source;
 }
@@ -35,10 +35,9 @@ std::vector<RobotWorld::Barrier> barriers_of(const PlanSpec& plan) {
   std::vector<RobotWorld::Barrier> barriers;
   for (const BarrierSpec& spec : plan.barriers) {
     const plan::Point a = point_of(spec.corner_m.value()), b = point_of(spec.opposite_m.value());
-    RobotWorld::Barrier barrier{
-        .area = {{std::min(a.x_m, b.x_m), std::min(a.y_m, b.y_m)},
-                 {std::max(a.x_m, b.x_m), std::max(a.y_m, b.y_m)}},
-        .from = Time::at(Duration::seconds(spec.from_s))};
+    RobotWorld::Barrier barrier{.area = {{std::min(a.x_m, b.x_m), std::min(a.y_m, b.y_m)},
+                                         {std::max(a.x_m, b.x_m), std::max(a.y_m, b.y_m)}},
+                                .from = Time::at(Duration::seconds(spec.from_s))};
     if (spec.until_s) barrier.until = Time::at(Duration::seconds(*spec.until_s));
     barriers.push_back(barrier);
   }
@@ -153,8 +152,8 @@ std::vector<std::string> events_of(const Scenario& scenario) {
 std::unique_ptr<RobotWorld> make_robot_world(const Scenario& scenario, Simulation& simulation) {
   const PlanSpec& plan = scenario.world.plan.value();
   const auto first = std::find_if(scenario.agents.begin(), scenario.agents.end(), forages);
-  RobotWorld::Options options{.plan = plan.plan, .barriers = barriers_of(plan), .sources = {},
-                              .floor = {}};
+  RobotWorld::Options options{
+      .plan = plan.plan, .barriers = barriers_of(plan), .sources = {}, .floor = {}};
   for (const std::string& event : events_of(scenario)) {
     options.sources.push_back(source_of(scenario, event));
   }

@@ -123,8 +123,8 @@ TEST_F(ForagerChecks, APlanMayBeABitmap) {
   };
   EXPECT_EQ(bitmap("cell_m = 1\nwall_below = 50\n"), "no error");
   EXPECT_EQ(bitmap("cell_m = 1\n"),
-            "s.toml:4: world.plan.places[1]: place B at (2.5, 1.5) is in a wall; a place is in a "
-            "free cell");
+            "s.toml:4: world.plan.places[1]: place B at (2.500000, 1.500000) m is in a wall; a "
+            "place is in a free cell");
   EXPECT_EQ(plan("wall_below = 100"),
             "s.toml:5: world.plan.wall_below: only for bitmaps, whose file ends in .png");
 }

@@ -73,7 +73,8 @@ TEST_F(CanonicalText, DependsOnContentAlone) {
         "topology='ring'\nrate_bps=2.5e5\n[record]\nseries=['nees']\n[world]\n"
         "targets=[{position_m=[40,25],name='alarm'}]\n[world.dummy]\n");
   EXPECT_EQ(error_of([] { load_scenario("b.toml", {}, {}); }),
-            "b.toml:16: unknown key 'dummy' in [world]; allowed: targets, step_s, log, area");
+            "b.toml:16: unknown key 'dummy' in [world]; allowed: targets, step_s, log, area, plan, "
+            "sources");
   write("b.toml",
         "duration_s=6e1\nseed=7\n[[agents]]\ncount=0x4\nestimator.fusion='ci-det'\n"
         "sensor.kind='position'\nsensor.sigma_m=5\n[radio]\nloss.probability=1e-1\n"

@@ -107,21 +107,23 @@ TEST_F(ForagerRun, WhoHasTheMapGoesRoundCornersAsATautString) {
 }
 
 // The first trip is a search; the way back is the way it came, less the detours that a sense radius
-// of 1 m cuts off, and each is shorter than the one before, but for ticks.
+// of 1 m cuts off; none is much longer than the one before.
 TEST_F(ForagerRun, ALoneRobotFollowsItsOwnTrailAndCutsCorners) {
-  const std::string trails = with(shipped(lone, "corridor"), "\"map\"", "\"trails\"");
+  // However long it searches, what it laid then is there on the way back.
+  const std::string trails =
+      with(shipped(lone, "corridor"), "\"map\"", "\"trails\", age_max_s = 2000");
   const double least_m = taut_m(radius_m) - 2.0;
   const Values values = run(with(trails, "duration_s = 700", "duration_s = 1300"));
   const std::vector<double> lengths = values.by_trip(0, "trip_length_m");
-  ASSERT_GE(lengths.size(), 8U);
-  EXPECT_GT(lengths.front(), 1.2 * least_m) << "of another seed it may be lucky";
+  ASSERT_GE(lengths.size(), 5U);
+  EXPECT_GE(lengths.front(), least_m);
   for (std::size_t i = 1; i < lengths.size(); ++i) {
     EXPECT_GE(lengths[i], least_m);
     EXPECT_LE(lengths[i], 1.1 * least_m);
-    EXPECT_LE(lengths[i], lengths[i - 1] + 0.1);
+    EXPECT_LE(lengths[i], lengths[i - 1] + 0.5);
   }
-  EXPECT_LE(lengths.back(), least_m + 0.75);
-  EXPECT_GT(values.scalar(0, "time_following_share"), 0.7);
+  EXPECT_LE(lengths.back(), least_m + 1.5);
+  EXPECT_GT(values.scalar(0, "time_following_share"), 0.4);
   // Without trails it searches each time.
   const Values searching = run(with(shipped(lone, "corridor"), "\"map\"", "\"explore\""));
   EXPECT_GT(searching.scalar(0, "trip_length_mean_m"), 1.2 * least_m);
@@ -201,17 +203,43 @@ TEST_F(ForagerRun, TrailsOfEveryKindBringRobotsTogether) {
   }
 }
 
+// A robot in blinkers stands on a crumb and sees none that leads on: those are behind it.
+TEST_F(ForagerRun, NobodyStaysForEverOnACrumbThatLeadsNowhere) {
+  series_ = {"robot_x_m", "robot_y_m"};
+  write("plan.txt", straight_corridor(40, 8));
+  const std::string dense = with(team(2), "series_period_s = 5", "series_period_s = 1");
+  const std::string blinkered = with(dense, "exploration", "field_rad = 2.0, exploration");
+  for (const std::uint64_t seed : {4, 5}) {
+    const Values values = run(blinkered, seed);
+    double panicking = 0.0;
+    for (const AgentId id : {0, 1}) {
+      const auto x_m = values.over_time(id, "robot_x_m"), y_m = values.over_time(id, "robot_y_m");
+      double still_s = 0.0, longest_s = 0.0;
+      for (double time = 1.0; time <= 700.0; time += 1.0) {
+        const double dx = x_m.at(time) - x_m.at(time - 1.0), dy = y_m.at(time) - y_m.at(time - 1.0);
+        still_s = math::hypot(dx, dy) < 0.01 ? still_s + 1.0 : 0.0;
+        longest_s = std::max(longest_s, still_s);
+      }
+      // 2 s until it panics; then it may turn around before it drives.
+      EXPECT_LE(longest_s, 10.0) << id;
+      panicking += values.scalar(id, "time_panicking_share");
+    }
+    EXPECT_GT(panicking, 0.0) << "of another seed nobody came to such a crumb";
+    EXPECT_GE(values.scalar(central_agent, "trips"), 12.0);
+  }
+}
+
 // Shamshirdar 2019, figure 4.5: the last crumb was dropped on the way to the event, before it
-// happened; who stays there never comes to it.
-TEST_F(ForagerRun, WithoutSearchARobotSticksToTheLastCrumbOfATrail) {
+// happened; who stays there does not come to it, but for its panic.
+TEST_F(ForagerRun, WithoutSearchARobotPanicsOnTheLastCrumbOfATrail) {
   write("plan.txt", straight_corridor(40, 8));
   const std::string thesis =
       with(with(lone, "\"map\"", "\"trails\""), "exploration",
            R"(parameters = "thesis-2019-text", trail_end = "END", exploration)");
   const Values stuck = run(with(thesis, "END", "none")),
                searching = run(with(thesis, "END", "search"));
-  EXPECT_EQ(stuck.scalar(0, "trips"), 2.0) << "each event is found once by exploring";
-  EXPECT_GT(stuck.scalar(0, "time_following_share"), 0.7);
+  EXPECT_GT(stuck.scalar(0, "time_panicking_share"),
+            searching.scalar(0, "time_panicking_share") + 0.02);
   EXPECT_GE(searching.scalar(0, "trips"), 10.0);
 }
 

@@ -158,14 +158,17 @@ std::optional<double> FreeDirections::first(bool free_one, double from_rad,
   return std::nullopt;
 }
 
-std::optional<double> FreeDirections::any(Stream& draws) const {
+std::optional<double> FreeDirections::any(Stream& draws, double off_max_rad) const {
+  const auto eligible = [&](int s) {
+    return free(s) && seen(s) && std::fabs(bearing_rad(s)) <= off_max_rad;
+  };
   double sum = 0.0;
-  for (int s = 0; s < sectors; ++s) sum += free(s) && seen(s) ? open_m(s) : 0.0;
+  for (int s = 0; s < sectors; ++s) sum += eligible(s) ? open_m(s) : 0.0;
   if (sum <= 0.0) return std::nullopt;
   double left = draws.uniform() * sum;
   std::optional<double> last;
   for (int s = 0; s < sectors && left >= 0.0; ++s) {
-    if (!free(s) || !seen(s)) continue;
+    if (!eligible(s)) continue;
     left -= open_m(s);
     last = bearing_rad(s);
   }

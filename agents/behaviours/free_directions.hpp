@@ -66,8 +66,9 @@ class FreeDirections {
   /// The first direction from a bearing on, counter-clockwise or clockwise, that is free, or that
   /// is blocked.
   std::optional<double> first(bool free_one, double from_rad, bool counter_clockwise) const;
-  /// A free direction that is seen, at random in proportion to how far it is open there.
-  std::optional<double> any(Stream& draws) const;
+  /// A free direction that is seen, at most so far off the heading, at random in proportion to how
+  /// far it is open there.
+  std::optional<double> any(Stream& draws, double off_max_rad) const;
   /// Of all that is seen, free or not, the direction in which it is farthest to anything.
   double most_open() const;
 

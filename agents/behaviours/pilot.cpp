@@ -180,7 +180,7 @@ drive::Command Pilot::panic(const Senses& senses, Stream& draws) {
     eyes_.block(cares_.back().clearance_m, cares_.back().look_m);
     // What it sees is no guide to who touches what he does not see.
     const double anywhere = draws.uniform(-math::pi, math::pi);
-    const double drawn = pushing_ ? anywhere : eyes_.any(draws).value_or(anywhere);
+    const double drawn = pushing_ ? anywhere : eyes_.any(draws, math::pi).value_or(anywhere);
     leg_rad_ = math::wrap_angle(heading + drawn);
     leg_until_s_ = senses.now_s + draws.uniform(leg_min_s, leg_max_s) +
                    std::fabs(drawn) / options_.turn_rad_per_s;

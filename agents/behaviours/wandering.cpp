@@ -11,6 +11,8 @@ namespace {
 
 /// A heading that can be kept only by turning away by more than this is blocked.
 constexpr double blocked_rad = 0.8;
+/// It does not turn back where it came from, unless it must.
+constexpr double roam_rad = 1.8;
 /// Walls are looked for from a little behind the side on.
 constexpr double side_rad = 1.9;
 constexpr double other_side_rad = 0.6;  ///< and so far to the other side
@@ -69,7 +71,9 @@ double Wandering::roam(FreeDirections& eyes, const drive::Pose& odometry, double
     again = nearest && std::fabs(math::wrap_angle(nearest->bearing_rad - bearing)) > blocked_rad;
   }
   if (again) {
-    const double drawn = eyes.any(draws).value_or(draws.uniform(-math::pi, math::pi));
+    std::optional<double> ahead = eyes.any(draws, roam_rad);
+    if (!ahead) ahead = eyes.any(draws, math::pi);
+    const double drawn = ahead.value_or(draws.uniform(-math::pi, math::pi));
     heading_rad_ = math::wrap_angle(odometry.heading_rad + drawn);
     until_s_ = now_s + draws.exponential(1.0 / options_.hold_s);
   }

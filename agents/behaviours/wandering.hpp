@@ -1,13 +1,13 @@
 // Where a robot heads that has nowhere to go, from what it sees around it.
 //
 // Three manners. To roam is to hold a heading for an exponentially distributed time, or until it is
-// blocked, and to draw another one then, in proportion to how far it is open that way. To follow
-// walls is to keep one as near at a side, drawn at random, as the clearance allows, so that a robot
-// goes around rooms and through their doors. To explore corridors is what the robots of LOST do
-// (R. Vaughan, K. Støy, G. Sukhatme, M. Matarić, IEEE Trans. Robotics and Automation 18(5), 2002):
-// to head for what is open, to take a branch at random where there are several, and to turn around
-// where it ends. Who follows walls or corridors roams in between: a wall may be an island's, and
-// not every place lies at a corridor.
+// blocked, and to draw another one then, not back if it can, in proportion to how far it is open
+// that way. To follow walls is to keep one as near at a side, drawn at random, as the clearance
+// allows, so that a robot goes around rooms and through their doors. To explore corridors is what
+// the robots of LOST do (R. Vaughan, K. Støy, G. Sukhatme, M. Matarić, IEEE Trans. Robotics and
+// Automation 18(5), 2002): to head for what is open, to take a branch at random where there are
+// several, and to turn around where it ends. Who follows walls or corridors roams in between: a
+// wall may be an island's, and not every place lies at a corridor.
 #pragma once
 
 #include <array>

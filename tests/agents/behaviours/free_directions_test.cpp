@@ -154,7 +154,7 @@ TEST(FreeDirections, ADrawIsInProportionToHowFarItIsOpen) {
   Stream draws(3, Purpose("draws"), Entity::agent(0));
   int far = 0;
   constexpr int rounds = 4000;
-  for (int i = 0; i < rounds; ++i) far += eyes.any(draws).value() < -0.5 * math::pi;
+  for (int i = 0; i < rounds; ++i) far += eyes.any(draws, math::pi).value() < -0.5 * math::pi;
   // A quarter of weight 3, three quarters of weight 1: 0.5, with a deviation of 0.008.
   EXPECT_NEAR(far / static_cast<double>(rounds), 0.5, 0.03);
   EXPECT_LT(eyes.most_open(), -0.5 * math::pi);

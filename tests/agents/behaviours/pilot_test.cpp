@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "tests/agents/behaviours/pilot_bed.hpp"
+#include "tools/memory/memory.hpp"
 
 namespace hearsay {
 namespace {
@@ -119,7 +120,7 @@ TEST(Pilot, ItKeepsItsMarginWhereThereIsRoom) {
 class Explores : public testing::TestWithParam<Exploring> {};
 
 TEST_P(Explores, ThroughADoorAndEverywhere) {
-  PilotBed bed(rooms(), {.speed_m_per_s = 0.5, .exploring = GetParam()});
+  PilotBed bed(rooms(), {.speed_m_per_s = 0.5, .exploring = GetParam()}, 90);
   const plan::Point a = bed.plan().place("A"), b = bed.plan().place("B");
   bed.add({a.x_m, a.y_m, 0.3});
   constexpr int most = 15000;
@@ -131,7 +132,7 @@ TEST_P(Explores, ThroughADoorAndEverywhere) {
 
 TEST_P(Explores, NeverForLongInOnePlace) {
   Stream draws(4, Purpose("starts"), Entity::agent(0));
-  PilotBed bed(shipped("office"), {.speed_m_per_s = 0.5, .exploring = GetParam()});
+  PilotBed bed(shipped("office"), {.speed_m_per_s = 0.5, .exploring = GetParam()}, 90);
   for (int i = 0; i < 4; ++i) bed.add_anywhere(draws);
   std::vector<plan::Point> since_at(4);
   std::vector<double> since_s(4);
@@ -253,7 +254,7 @@ TEST(Pilot, AnotherOneInADoorIsNoDeadlock) {
 
 TEST(Pilot, CrowdsThatGoToAndFroKeepMoving) {
   Stream draws(6, Purpose("starts"), Entity::agent(0));
-  PilotBed bed(shipped("square"), {.speed_m_per_s = 0.5}, 60);
+  PilotBed bed(shipped("square"), {.speed_m_per_s = 0.5}, 45);
   constexpr int robots = 25;
   for (int i = 0; i < robots; ++i) bed.add_anywhere(draws);
   const plan::Point places[] = {bed.plan().place("A"), bed.plan().place("B")};
@@ -313,6 +314,26 @@ TEST(Pilot, EqualSensesAndDrawsGiveEqualCommands) {
     }
   }
   EXPECT_EQ(ways[0], ways[1]);
+}
+
+TEST(Pilot, NoCallAllocates) {
+  for (const Exploring manner : {Exploring::roam, Exploring::wall, Exploring::corridor}) {
+    PilotBed bed(rooms(), {.exploring = manner}, 60);
+    bed.add({1.5, 2.0, 0.0});
+    std::size_t allocated = 0;
+    for (int step = 0; step < 300; ++step) {
+      const auto senses = bed.senses(0);
+      const std::size_t before = memory::allocations();
+      const auto command = step % 100 < 20 ? bed.pilot(0).search(senses, {}, 1.0, bed.draws(0))
+                           : step % 100 < 40
+                               ? bed.pilot(0).towards(senses, {8.0, 2.0}, bed.draws(0))
+                               : bed.pilot(0).explore(senses, bed.draws(0));
+      allocated += memory::allocations() - before;
+      bed.drive(0, command);
+      bed.pass();
+    }
+    EXPECT_EQ(allocated, 0u);
+  }
 }
 
 TEST(Pilot, FreeDistancesAreThoseOfTheScan) {

@@ -117,6 +117,7 @@ Override StudyReader::override_from(TomlNode value, const std::string& key,
   resolve_path(value, key, "world.log", "directory");
   resolve_path(value, key, "radio", "contacts");
   resolve_path(value, key, "world.area", "heights");
+  resolve_path(value, key, "world.plan", "file");
   return {key, to_toml(value), origin};
 }
 

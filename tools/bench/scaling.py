@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Whole runs: how fast the rumour study is swept, fleets that follow moving targets and survey an area, how CPU
-time grows with agents and simulated time, and memory with simulated time.
+"""Whole runs: how fast the rumour study is swept, fleets that follow moving targets and survey an area, robots
+that go by trails, how CPU time grows with agents and simulated time, and memory with simulated time.
 
 Usage: scaling.py HEARSAY [--hour]     writes Markdown; --hour adds an hour of 10,000 agents (minutes)
 """
@@ -22,6 +22,10 @@ SCENARIO = os.path.join(HERE, "scale.toml")
 FLEET = os.path.join(HERE, "fleet.toml")
 FLEET_S = 600.0
 SURVEY = os.path.join(HERE, "survey.toml")
+FORAGE = os.path.join(HERE, "forage.toml")
+FORAGE_S = 900.0
+CROWD_S = 120.0
+CROWD = ["agents.count=1000", 'agents.robot.start="anywhere"', "agents.trails.crumbs_max=1024"]
 STUDY = os.path.join(HERE, "../../scenarios/rumour/rumour.study.toml")
 RUNS = 21600  # of the study
 
@@ -94,6 +98,10 @@ def fleets(hearsay, duration_s):
         print(f"| {topology} | {cpu:.1f} | {duration_s / cpu:.1f} | {1e6 * cpu / beliefs:.2f} | {peak:.1f} |")
 
 
+def verdict(met):
+    return "met" if met else "**missed**"
+
+
 def survey(hearsay, duration_s, goal):
     print("\n## A fleet that surveys an area\n")
     print(f"`tools/bench/survey.toml`: twenty vehicles with cameras over a grid of 200 × 200 cells, each of which looks "
@@ -103,7 +111,23 @@ def survey(hearsay, duration_s, goal):
     print("|---|---|---|---|---|")
     cpu, peak = measured(hearsay, SURVEY, [f"duration_s={float(duration_s)!r}"])
     times = duration_s / cpu
-    print(f"| {cpu:.1f} | {times:.1f} | ≥ {goal} | {'met' if times >= goal else '**missed**'} | {peak:.1f} |")
+    print(f"| {cpu:.1f} | {times:.1f} | ≥ {goal} | {verdict(times >= goal)} | {peak:.1f} |")
+
+
+def forage(hearsay, duration_s, goal, crowd_s, goal_mb):
+    print("\n## Robots that go by trails\n")
+    print(f"`tools/bench/forage.toml`: robots among the walls of a hospital, each of which looks around itself with 180 "
+          "rays ten times a second, and tells who is within 20 m of each crumb that it lays. A hundred, until crumbs go "
+          "of age as fast as they are laid, and a thousand, each with room for 1024 crumbs; ledger off. One run a row, "
+          "start-up included.\n")
+    print("| robots | simulated [s] | CPU time [s] | times real time | goal | | peak memory [MB] | goal | |")
+    print("|---|---|---|---|---|---|---|---|---|")
+    cpu, peak = measured(hearsay, FORAGE, [f"duration_s={float(duration_s)!r}"])
+    times = duration_s / cpu
+    print(f"| 100 | {duration_s:g} | {cpu:.1f} | {times:.1f} | ≥ {goal} | {verdict(times >= goal)} | {peak:.1f} | | |")
+    cpu, peak = measured(hearsay, FORAGE, CROWD + [f"duration_s={float(crowd_s)!r}"])
+    print(f"| 1000 | {crowd_s:g} | {cpu:.1f} | {crowd_s / cpu:.1f} | | | {peak:.1f} | ≤ {goal_mb} | "
+          f"{verdict(peak <= goal_mb)} |")
 
 
 def section(title, unit, sizes, times):
@@ -119,6 +143,7 @@ def main():
     sweeps(hearsay)
     fleets(hearsay, FLEET_S)
     survey(hearsay, FLEET_S, 100)
+    forage(hearsay, FORAGE_S, 20, CROWD_S, 1024)
     start_s = cpu_s(hearsay, 2, 0.001)  # what a process costs that does nothing; taken off below
     print("\n## How cost grows\n")
     print("`tools/bench/scale.toml`: agents 20 m apart on a ring, six in range of each, that look at "

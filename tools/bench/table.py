@@ -27,6 +27,8 @@ GOALS = {
     "fuse_grid/100": None, "fuse_grid/1000": 0.5, "fuse_grid_channel/1000": None,
     "camera/400": None, "camera/6400": None, "camera/102400": None, "camera_grid/64": None, "camera_grid/4096": None,
     "scan/6": None, "scan/12": None, "advance/6": None,
+    "alive/1000": None, "alive/10000": None, "alive/100000": None,
+    "reach/10": None, "reach/100": None, "reach/1000": None, "merge/1024": None,
     "log": 1.0,
 }
 # Measured against another workload's floor: what a time-out an event costs beside none at all.
@@ -38,7 +40,12 @@ BELOW_US = {"fuse/4": 1.0, "fuse/6": 2.0, "add/20": 5.0, "weigh/20": 5.0, "means
 # Exponents of time against steps, 20 to 1000: 1 within this.
 GROWS = ("add", "weigh", "means", "intersect")
 EXPONENT_WITHIN = 0.1
+# How the cost of a look for a crumb may grow: sizes, of what, and the exponent it stays below. It does not depend on
+# how many are alive, but for caches.
+LOOKS = {"alive": ((1000, 10000, 100000), "alive, ten in reach", 0.15),
+         "reach": ((10, 100, 1000), "in reach, 10,000 alive", 1.1)}
 COUNTERS = {"bytes_per_process": "bytes a process", "bytes_per_agent": "bytes an agent", "bytes/row": "bytes a row",
+            "in_reach": "in reach",
             "allocations": "allocations a call"}
 RATES = ("items_per_second", "deliveries_per_s", "rows/s")
 
@@ -106,6 +113,19 @@ def print_times(rates):
         slope = exponent(sizes, times)
         print(f"| {kind} | " + " | ".join(f"{t:.2f}" for t in times)
               + f" | {slope:.3f} | 1 ± {EXPONENT_WITHIN} | {verdict(abs(slope - 1.0) <= EXPONENT_WITHIN)} |")
+    print_looks(us)
+
+
+def print_looks(us):
+    """How a look for the crumb to follow grows with those alive and those in reach."""
+    print("\n## A look for the crumb to follow\n")
+    print("| crumbs | | | | exponent | goal | |")
+    print("|---|---|---|---|---|---|---|")
+    for kind, (sizes, what, goal) in LOOKS.items():
+        times = [us[f"{kind}/{size}"] for size in sizes]
+        slope = exponent(sizes, times)
+        print(f"| {what} | " + " | ".join(f"{size}: {t:.2f} µs" for size, t in zip(sizes, times))
+              + f" | {slope:.3f} | < {goal} | {verdict(slope < goal)} |")
 
 
 def main():
@@ -113,9 +133,9 @@ def main():
     compiler = subprocess.run(["g++", "--version"], capture_output=True, text=True).stdout.split("\n")[0]
     print("# Benchmarks\n")
     print(f"{processor()}, {compiler}, release build. Median of five interleaved repetitions, in millions "
-          "a second (events, wake-ups, deliveries, fusions, trajectories, bytes of grids, cells in view, scans, moves, rows) of CPU time (log: of wall time). The "
+          "a second (events, wake-ups, deliveries, fusions, trajectories, bytes of grids, cells in view, scans, moves, looks, crumbs, rows) of CPU time (log: of wall time). The "
           "ratio is ours to a floor in the same binary and run: plain arrays and std::priority_queue, "
-          "dynamic-size Eigen (fuse), memcpy (fuse_grid), projections alone (camera), all walls (scan, advance), bare prepared inserts (log). Written by `tools/bench/run`.\n")
+          "dynamic-size Eigen (fuse), memcpy (fuse_grid), projections alone (camera), all walls (scan, advance), all crumbs (alive), bare prepared inserts (log). Written by `tools/bench/run`.\n")
     print("| workload | floor | ours | ratio | goal | |")
     print("|---|---|---|---|---|---|")
     for workload in GOALS:
@@ -146,7 +166,10 @@ def main():
           "`camera` updates a grid of 4096×4096 cells by an image in which 400 to 102,400 of them are in view, and "
           "`camera_grid` grids of 64×64 and 4096×4096 with 1600 in view; "
           "`scan` is 180 rays of up to 10 m on a floor of 60×30 m with 6×6 or 12×12 rooms, beside each ray tried on "
-          "all walls, `advance` a short move of a disc there, beside its distance to all walls; `log` writes "
+          "all walls, `advance` a short move of a disc there, beside its distance to all walls; `alive` looks for the "
+          "crumb to follow with about ten in reach and N alive, beside a loop over all, `reach` with about N in "
+          "reach and 10,000 alive, beside a loop over N, and `merge` tells a full store news, beside a copy (looks and "
+          "merges that allocate are refused); `log` writes "
           "rows into SQLite.")
     print_times(rates)
 

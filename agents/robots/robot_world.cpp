@@ -23,11 +23,26 @@ RobotWorld::RobotWorld(Simulation& simulation, Options options)
     : simulation_(simulation),
       options_(std::move(options)),
       walls_(*options_.plan, areas_of(options_.barriers)),
-      floor_(walls_, options_.floor) {}
+      floor_(walls_, options_.floor) {
+  // Robots are put on the floor before anything happens on it.
+  for (std::size_t i = 0; i < options_.barriers.size(); ++i) {
+    if (options_.barriers[i].from <= Time()) walls_.block(i);
+  }
+}
 
 const RobotWorld::Source& RobotWorld::source(trails::EventId event) const {
   require(event < options_.sources.size(), "robot world: there is no such event");
   return options_.sources[event];
+}
+
+bool RobotWorld::in_barrier(plan::Point p) const {
+  for (std::size_t i = 0; i < options_.barriers.size(); ++i) {
+    const plan::Rectangle& area = options_.barriers[i].area;
+    const bool within = p.x_m >= area.min.x_m && p.x_m <= area.max.x_m && p.y_m >= area.min.y_m &&
+                        p.y_m <= area.max.y_m;
+    if (within && walls_.up(i)) return true;
+  }
+  return false;
 }
 
 std::optional<drive::Pose> RobotWorld::room(const Start& start, Stream& draws, int robot) {
@@ -47,6 +62,7 @@ std::optional<drive::Pose> RobotWorld::room(const Start& start, Stream& draws, i
       pose.y_m = start.at->y_m + dy;
     }
     if (!floor_.has_room(pose, robot) || !options_.plan->free({pose.x_m, pose.y_m})) continue;
+    if (in_barrier({pose.x_m, pose.y_m})) continue;
     const bool beyond_a_wall =
         start.at && advance(walls_, {pose.x_m, pose.y_m}, *start.at, plan::radius_min_m).blocked;
     if (!beyond_a_wall) return pose;
@@ -58,7 +74,8 @@ int RobotWorld::add(const Start& start, Stream draws) {
   const auto pose = room(start, draws, -1);
   if (pose) return floor_.add(*pose);
   throw InputError("there is no room for robot " + std::to_string(floor_.robots()) + " of radius " +
-                   std::to_string(floor_.radius_m()) + " m where it should start; give a larger "
+                   std::to_string(floor_.radius_m()) +
+                   " m where it should start; give a larger "
                    "agents.robot.scatter_m");
 }
 
@@ -87,9 +104,8 @@ void RobotWorld::start() {
   }
   for (std::size_t i = 0; i < options_.sources.size(); ++i) {
     for (std::size_t m = 0; m < options_.sources[i].moves.size(); ++m) {
-      simulation_.schedule(options_.sources[i].moves[m].at, Phase::world, [this, i, m] {
-        move(i, m);
-      });
+      simulation_.schedule(options_.sources[i].moves[m].at, Phase::world,
+                           [this, i, m] { move(i, m); });
     }
   }
 }

@@ -52,10 +52,10 @@ class RobotWorld {
     double scatter_m = 0.0;             ///< at most so far from there, on a straight way
     std::optional<double> heading_rad;  ///< nothing: any
   };
-  /// Puts one more robot on the floor. @return its number, from 0. @throws InputError if no room
-  /// is found.
+  /// Puts one more robot on the floor, not into a barrier that is up, or comes up at 0. @return its
+  /// number, from 0. @throws InputError if no room is found.
   int add(const Start& start, Stream draws);
-  /// Carries a robot there, if room is found.
+  /// Carries a robot there, if room is found, as add() does.
   bool carry(int robot, const Start& start, Stream draws);
 
   plan::RobotFloor& floor() { return floor_; }
@@ -79,6 +79,8 @@ class RobotWorld {
   const Source& source(trails::EventId event) const;
   void move(std::size_t source, std::size_t move);
   std::optional<drive::Pose> room(const Start& start, Stream& draws, int robot);
+  /// Whether the point lies in a barrier that is up.
+  bool in_barrier(plan::Point p) const;
   void report(const char* kind, const std::string& detail);
 
   Simulation& simulation_;

@@ -31,6 +31,8 @@ class WallIndex {
   void block(std::size_t barrier) { set(barrier, 1); }
   void unblock(std::size_t barrier) { set(barrier, 0); }
   std::size_t barriers() const { return up_.size(); }
+  /// Whether a barrier is up; `barrier` < barriers().
+  bool up(std::size_t barrier) const { return up_[barrier] != 0; }
 
   double width_m() const { return width_m_; }
   double height_m() const { return height_m_; }

@@ -131,6 +131,29 @@ TEST_F(Barrier, StandsOnTheFloorInTheirOrder) {
   EXPECT_EQ(events(), (Rows{"0ms barrier: up 1", "3000ms barrier: up 0"}));
 }
 
+TEST_F(Barrier, IsNoPlaceToStartWhileItIsUp) {
+  // Both have room for many within.
+  world({.plan = room(20.0, 4.0),
+         .barriers = {{.area = {{2.0, 0.0}, {10.0, 4.0}}, .from = Time(), .until = Time::at(5_s)},
+                      {.area = {{10.0, 0.0}, {18.0, 4.0}}, .from = Time::at(5_s)}},
+         .sources = {},
+         .floor = {}});
+  for (std::uint64_t n = 0; n < 4; ++n) {
+    const int robot = world_->add({.at = {}}, draws(n));
+    EXPECT_FALSE(world_->pose(robot).x_m > 2.0 && world_->pose(robot).x_m < 10.0);
+  }
+  EXPECT_THROW(world_->add({.at = plan::Point{6.0, 2.0}, .scatter_m = 1.0}, draws()), InputError);
+  at(6_s, [&] {
+    EXPECT_TRUE(world_->carry(0, {.at = plan::Point{6.0, 2.0}}, draws())) << "it is down";
+    EXPECT_FALSE(world_->carry(1, {.at = plan::Point{14.0, 2.0}}, draws()));
+    for (std::uint64_t n = 0; n < 50; ++n) {
+      ASSERT_TRUE(world_->carry(2, {.at = {}}, draws(10 + n)));
+      EXPECT_FALSE(world_->pose(2).x_m > 10.0 && world_->pose(2).x_m < 18.0);
+    }
+  });
+  run();
+}
+
 TEST_F(Floor, BarriersLieWithinThePlan) {
   EXPECT_THROW(world({.plan = room(20.0, 2.0),
                       .barriers = {{.area = {{4.0, 0.0}, {5.0, 2.1}}, .from = Time()}},

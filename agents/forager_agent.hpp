@@ -36,8 +36,8 @@ class ForagerAgent final : public Agent {
     periodic,  ///< at the ticks of its talk
   };
   struct Options {
-    int robot = 0;            ///< its number on the floor
-    RobotWorld::Start start;  ///< where it is put back
+    int robot = 0;                                         ///< its number on the floor
+    RobotWorld::Start start;                               ///< where it is put back
     Duration period = Duration::nanoseconds(100'000'000);  ///< of control, > 0
     std::shared_ptr<const plan::Fan> fan;                  ///< of its scanner
     double range_m = 5.0;
@@ -46,7 +46,7 @@ class ForagerAgent final : public Agent {
     double clock_offset_s = 0.0;        ///< what its clock is ahead
     std::vector<trails::EventId> task;  ///< after each of them in turn, over and over; ≥ 1
     bool respawn = false;               ///< an event over, it is put back to its start
-    bool wait_for_all = false;          ///< after its first trip, found without trails, until all had one
+    bool wait_for_all = false;          ///< its first trip is without trails; then it waits for all
     Navigation navigation = Navigation::trails;
     Pilot::Options pilot;
     TrailFollower::Options follower;

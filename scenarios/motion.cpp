@@ -67,10 +67,9 @@ motion::GaussMarkov gauss_markov_of(const MotionSpec& spec) {
 }  // namespace
 
 bool has_motion(const Scenario& scenario) {
-  return std::any_of(scenario.agents.begin(), scenario.agents.end(),
-                     [](const AgentSpec& agent) {
-                       return agent.motion.has_value() || agent.kind == "forager";
-                     });
+  return std::any_of(scenario.agents.begin(), scenario.agents.end(), [](const AgentSpec& agent) {
+    return agent.motion.has_value() || agent.kind == "forager";
+  });
 }
 
 namespace {

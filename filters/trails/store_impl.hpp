@@ -39,16 +39,15 @@ bool TrailStore<S>::outlived(const Crumb& crumb, const Event* event) const {
 
 template <LocalizationSpace S>
 double TrailStore<S>::worn(const Crumb& crumb) const {
-  double share = std::isfinite(options_.age_max_s)
-                     ? (now_s_ - crumb.created_s) / options_.age_max_s
-                     : 0.0;
+  double share =
+      std::isfinite(options_.age_max_s) ? (now_s_ - crumb.created_s) / options_.age_max_s : 0.0;
   if (options_.life_arrivals > 0) {
     const auto event = std::lower_bound(events_.begin(), events_.end(), crumb.event,
                                         [](const Event& e, EventId n) { return e.event < n; });
     if (event != events_.end() && event->event == crumb.event) {
-      const auto since = std::count_if(
-          event->arrivals.begin(), event->arrivals.end(),
-          [&](const Age& arrival) { return arrival.created_s > crumb.created_s; });
+      const auto since =
+          std::count_if(event->arrivals.begin(), event->arrivals.end(),
+                        [&](const Age& arrival) { return arrival.created_s > crumb.created_s; });
       share = std::max(share, static_cast<double>(since) / options_.life_arrivals);
     }
   }

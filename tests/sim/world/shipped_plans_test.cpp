@@ -115,14 +115,12 @@ TEST_P(ShippedPlans, TheShortestPathCanBeDrivenAndIsTheSameBothWays) {
   EXPECT_EQ(there->points.back(), b);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, ShippedPlans,
-                         testing::Values(Expected{"square", 20.0, 20.0, 2},
-                                         Expected{"corridor", 40.0, 18.0, 2},
-                                         Expected{"cave", 40.0, 40.0, 3},
-                                         Expected{"hospital", 60.0, 30.0, 42},
-                                         Expected{"office", 30.5, 20.5, 4},
-                                         Expected{"doors", 20.0, 20.0, 2}),
-                         [](const auto& test) { return std::string(test.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    All, ShippedPlans,
+    testing::Values(Expected{"square", 20.0, 20.0, 2}, Expected{"corridor", 40.0, 18.0, 2},
+                    Expected{"cave", 40.0, 40.0, 3}, Expected{"hospital", 60.0, 30.0, 42},
+                    Expected{"office", 30.5, 20.5, 4}, Expected{"doors", 20.0, 20.0, 2}),
+    [](const auto& test) { return std::string(test.param.name); });
 
 TEST(ShippedHospital, HasFortyRoomsAroundOneNetOfCorridors) {
   const Drawing d = shipped("hospital");

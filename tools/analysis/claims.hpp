@@ -16,8 +16,8 @@
 // Over repetitions, `statistic`:
 //   auto      root mean square for errors (rms_error_m, velocity_error_m_per_s, x_error_m,
 //             y_error_m) and standard deviations (claimed_sigma_m, true_sigma_m,
-//             final_claimed_sigma_m, claimed_velocity_sigma_m_per_s); median for agree_again_s
-//             and alarms_found_s;
+//             final_claimed_sigma_m, claimed_velocity_sigma_m_per_s); median for times
+//             that may never come (agree_again_s, alarms_found_s, first_arrival_s, recovery_s);
 //             else the mean
 //   mean, rms
 //   median    with an interval between order statistics

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "scenarios/study.hpp"
 #include "tests/scenarios/temp_files.hpp"
 #include "tests/scenarios/with.hpp"
 
@@ -187,6 +189,18 @@ TEST_F(Plans, SetReachesAllOfIt) {
   EXPECT_EQ(s.world.plan->plan->width_m(), 8 * 1.9);
   EXPECT_EQ(s.world.plan->barriers[0].until_s, 30.0);
   EXPECT_EQ(s.record.crumbs, "off");
+}
+
+TEST_F(Plans, AreFoundFromTheStudyThatNamesThem) {
+  std::filesystem::create_directories("lost/plans");
+  write("lost/s.toml", scenario);
+  write("lost/plans/other.txt", floor_text);
+  write("lost/t.toml",
+        "scenario = \"s.toml\"\n[axes]\nplan = { points = [{ label = \"other\", set = "
+        "{ \"world.plan.file\" = \"plans/other.txt\" } }] }\n");
+  const Study study = load_study("lost/t.toml", {});
+  const Scenario s = load_scenario(study.scenario_file, cells(study)[0].set, {});
+  EXPECT_EQ(s.world.plan->file, "lost/plans/other.txt");
 }
 
 }  // namespace

@@ -102,7 +102,9 @@ void shorten(Point from, double heading_rad, Point turn, const Fan& fan, const D
   };
   const double dx = disc.at.x_m - from.x_m, dy = disc.at.y_m - from.y_m;
   const double distance_m = std::sqrt(dx * dx + dy * dy);
-  if (distance_m <= disc.radius_m || fan.view_rad() == 0.0) return look(0, rays - 1);
+  // Of so narrow a view the rays to a radian are no number that can be reckoned with.
+  constexpr double narrow_rad = 1e-6;
+  if (distance_m <= disc.radius_m || fan.view_rad() < narrow_rad) return look(0, rays - 1);
   const double bearing_rad = math::wrap_angle(math::atan2(dy, dx) - heading_rad);
   const double half_rad = math::asin(disc.radius_m / distance_m);
   const double rays_a_rad = rays / fan.view_rad();

@@ -199,6 +199,10 @@ TEST(RayCaster, AScanIsItsRays) {
     EXPECT_NEAR(distances[i], cast(walls, {1.25, 1.5}, d, 2.5, discs).distance_m, 1e-9) << i;
   }
   EXPECT_EQ(Fan(1, 0.0).directions()[0], (Point{1.0, 0.0}));
+  // As narrow as numbers are, it sees a disc straight on.
+  scan(walls, {1.25, 1.5}, 0.0, Fan(37, 1e-307), 5.0, discs, distances);
+  for (const double d : distances)
+    EXPECT_NEAR(d, cast(walls, {1.25, 1.5}, {1.0, 0.0}, 5.0, discs).distance_m, 1e-12);
 }
 
 TEST(RayCaster, MisuseIsABug) {

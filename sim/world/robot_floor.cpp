@@ -75,15 +75,21 @@ std::span<const Disc> RobotFloor::near(Point from, double within_m, int except) 
   const double reach_m = within_m + options_.radius_m;
   const int low = cell_of({from.x_m - reach_m, from.y_m - reach_m});
   const int high = cell_of({from.x_m + reach_m, from.y_m + reach_m});
+  const int rows = high / columns_ - low / columns_ + 1;
+  const int columns = high % columns_ - low % columns_ + 1;
   found_.clear();
-  for (int row = low / columns_; row <= high / columns_; ++row) {
+  const auto look = [&](int robot) {
+    const drive::Pose& pose = robots_[static_cast<std::size_t>(robot)].pose;
+    const double dx = pose.x_m - from.x_m, dy = pose.y_m - from.y_m;
+    if (robot != except && dx * dx + dy * dy <= reach_m * reach_m) found_.push_back(robot);
+  };
+  // Where there are more cells than robots it is less to ask each robot.
+  const bool each = rows * columns >= robots();
+  for (int robot = 0; each && robot < robots(); ++robot) look(robot);
+  for (int row = low / columns_; !each && row <= high / columns_; ++row) {
     for (int column = low % columns_; column <= high % columns_; ++column) {
       int robot = first_[static_cast<std::size_t>(row * columns_ + column)];
-      for (; robot >= 0; robot = robots_[static_cast<std::size_t>(robot)].next) {
-        const drive::Pose& pose = robots_[static_cast<std::size_t>(robot)].pose;
-        const double dx = pose.x_m - from.x_m, dy = pose.y_m - from.y_m;
-        if (robot != except && dx * dx + dy * dy <= reach_m * reach_m) found_.push_back(robot);
-      }
+      for (; robot >= 0; robot = robots_[static_cast<std::size_t>(robot)].next) look(robot);
     }
   }
   // Lists of cells depend on who came when; what is told does not.

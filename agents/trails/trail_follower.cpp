@@ -43,6 +43,8 @@ TrailFollower::Choice TrailFollower::look(trails::MetricStore& store, trails::Ev
                                           Stream& draws) {
   trails::MetricReach reach{.at = trails::point(here.x_m, here.y_m),
                             .radius_m = options_.sense_radius_m};
+  // Who believes himself beyond all positions has nothing near.
+  if (!trails::MetricSpace::sound(reach.at)) return {};
   if (options_.field_rad) reach.field = trails::Field{here.heading_rad, *options_.field_rad};
   const trails::Crumb* const best = store.best(goal, reach, now_s);
   if (best == nullptr) return {};

@@ -71,6 +71,14 @@ TEST_F(Follower, TakesTheCrumbOfLeastDistanceInReach) {
   EXPECT_EQ(choose({.sense_radius_m = 0.05, .field_rad = {}, .trail_end_s = {}}).way, Way::explore);
 }
 
+TEST_F(Follower, FindsNothingWhereItsOdometryIsBeyondAllPositions) {
+  crumb(0.5, 0.0, 8.0);
+  TrailFollower follower{TrailFollower::Options{}};
+  const double lost_m = 2.0 * trails::MetricSpace::position_max_m;
+  EXPECT_EQ(follower.choose(store_, goal, {lost_m, 0.0, 0.0}, now_s_, 1.0, draws_).way,
+            Way::explore);
+}
+
 TEST_F(Follower, SeesCrumbsInItsFieldOfViewAlone) {
   const auto at = [&](double bearing, double distance_s) {
     crumb(0.8 * math::cos(bearing), 0.8 * math::sin(bearing), distance_s);

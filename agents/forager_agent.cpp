@@ -11,8 +11,7 @@ namespace {
 
 // A waypoint of the map is passed at this distance.
 constexpr double waypoint_m = 0.3;
-// A map is asked anew when the way to the next waypoint may be blocked by a change, at most so
-// often.
+// A map is asked anew so often: barriers and sources change, and robots leave their way.
 constexpr double map_again_s = 10.0;
 // More turning than this, and less way, is a step of turning (Shamshirdar's program counts steps
 // that are no turns).
@@ -85,7 +84,9 @@ void ForagerAgent::step() {
   if (world_.happens(options_.robot, goal())) arrive();
   if (to_put_back_ || waits_) return;
   world_.floor().scan(options_.robot, *options_.fan, options_.range_m, scan_m_);
-  drive(decide());
+  Decision decision = decide();
+  if (pilot_.panicking()) decision.doing = Doing::panicking;
+  drive(decision);
 }
 
 void ForagerAgent::arrive() {
@@ -112,6 +113,7 @@ bool ForagerAgent::put_back() {
   odometer_.set(drive::relative_to(frame_, world_.pose(options_.robot)));
   carry_radio();
   pilot_.reset();
+  follower_.reset();
   if (!waits_) set_off();
   return true;
 }
@@ -154,7 +156,6 @@ ForagerAgent::Decision ForagerAgent::by_trails(const Pilot::Senses& senses) {
                   Doing::searching};
       break;
   }
-  if (pilot_.panicking()) decision.doing = Doing::panicking;
   return decision;
 }
 
@@ -176,8 +177,7 @@ ForagerAgent::Decision ForagerAgent::by_map() {
   if (map_next_ >= map_way_.points.size()) {
     return {pilot_.explore(senses, draws_), Doing::exploring};
   }
-  const drive::Command command = pilot_.through(senses, map_way_.points[map_next_], draws_);
-  return {command, pilot_.panicking() ? Doing::panicking : Doing::following};
+  return {pilot_.through(senses, map_way_.points[map_next_], draws_), Doing::following};
 }
 
 void ForagerAgent::drive(const Decision& decision) {

@@ -6,6 +6,7 @@
 
 #include "filters/trails/parameters.hpp"
 #include "scenarios/trails_checks.hpp"
+#include "sim/kernel/error.hpp"
 #include "sim/kernel/random.hpp"
 
 namespace hearsay {
@@ -166,11 +167,17 @@ std::unique_ptr<RobotWorld> make_robot_world(const Scenario& scenario, Simulatio
   }
   auto world = std::make_unique<RobotWorld>(simulation, std::move(options));
   AgentId id = 0;
-  for (const AgentSpec& agent : scenario.agents) {
+  for (std::size_t number = 0; number < scenario.agents.size(); ++number) {
+    const AgentSpec& agent = scenario.agents[number];
     for (int i = 0; i < agent.count; ++i, ++id) {
       if (!forages(agent)) continue;
-      world->add(start_of(*agent.robot, *plan.plan),
-                 simulation.stream(Purpose("robot start"), Entity::agent(id)));
+      try {
+        world->add(start_of(*agent.robot, *plan.plan),
+                   simulation.stream(Purpose("robot start"), Entity::agent(id)));
+      } catch (const InputError& error) {
+        throw InputError(scenario.file, 0,
+                         "agents[" + std::to_string(number) + "].robot: " + error.what());
+      }
     }
   }
   return world;

@@ -51,7 +51,7 @@ std::optional<drive::Pose> RobotWorld::room(const Start& start, Stream& draws, i
     // In the square around the start, those in its corners not taken: even over the disc.
     const double reach_m = start.scatter_m;
     const double u = draws.uniform(), v = draws.uniform(), w = draws.uniform();
-    pose.heading_rad = start.heading_rad.value_or(math::wrap_angle(2.0 * math::pi * w));
+    pose.heading_rad = math::wrap_angle(start.heading_rad.value_or(2.0 * math::pi * w));
     if (!start.at) {
       pose.x_m = u * walls_.width_m();
       pose.y_m = v * walls_.height_m();
@@ -73,10 +73,11 @@ std::optional<drive::Pose> RobotWorld::room(const Start& start, Stream& draws, i
 int RobotWorld::add(const Start& start, Stream draws) {
   const auto pose = room(start, draws, -1);
   if (pose) return floor_.add(*pose);
-  throw InputError("there is no room for robot " + std::to_string(floor_.robots()) + " of radius " +
-                   std::to_string(floor_.radius_m()) +
-                   " m where it should start; give a larger "
-                   "agents.robot.scatter_m");
+  throw InputError(
+      "no room is found for robot " + std::to_string(floor_.robots()) + " of radius " +
+      std::to_string(floor_.radius_m()) + " m " +
+      (start.at ? "within scatter_m = " + std::to_string(start.scatter_m) + " m of its start"
+                : "anywhere on the floor"));
 }
 
 bool RobotWorld::carry(int robot, const Start& start, Stream draws) {

@@ -282,6 +282,8 @@ TEST_F(Floor, StartsAreDrawnEvenlyOverTheDiscAndHeadingsOverTheCircle) {
   const plan::Point start{10.0, 10.0};
   const int robot = robot_at(10.0, 10.0, 0.5);
   EXPECT_DOUBLE_EQ(world_->pose(robot).heading_rad, 0.5);
+  ASSERT_TRUE(world_->carry(robot, {.at = start, .heading_rad = 5.0}, draws()));
+  EXPECT_DOUBLE_EQ(world_->pose(robot).heading_rad, 5.0 - 2.0 * math::pi);
   constexpr int n = 4000;
   int inner = 0, above = 0, ahead = 0;
   for (std::uint64_t i = 0; i < n; ++i) {

@@ -214,6 +214,29 @@ TEST_F(ForagerLife, NobodyEverStandsInAWallOrInAnother) {
   }
 }
 
+TEST_F(ForagerLife, WhereThereIsNoRoomForAllIsTold) {
+  write("s.toml", with(team, "count = 3", "count = 300"));
+  const auto prepared =
+      prepare(load_scenario("s.toml", {}, known_names(catalog_)), catalog_, logs_);
+  const std::string error = error_of([&] { hearsay::Run(prepared, catalog_, {.seed = 3}).run(); });
+  EXPECT_EQ(error.substr(0, error.find(" for robot")), "s.toml: agents[0].robot: no room is found");
+  EXPECT_NE(error.find("m within scatter_m = 1.2"), std::string::npos) << error;
+}
+
+TEST_F(ForagerLife, WhoCannotMovePanicsHoweverItFindsItsWay) {
+  write("cell.txt", "######\n#A##B#\n######\n");
+  std::string shut = with(with(team, "plan.txt", "cell.txt"), "scatter_m = 1.2", "scatter_m = 0");
+  shut = with(with(shut, "count = 3", "count = 1"), "duration_s = 600", "duration_s = 60");
+  for (const std::string navigation : {"trails", "explore", "map"}) {
+    const Values values =
+        run(with(shut, "trails = {", "trails = { navigation = \"" + navigation + "\","));
+    EXPECT_GT(values.scalar(0, "time_panicking_share"), 0.2) << navigation;
+    EXPECT_NEAR(values.scalar(0, "time_panicking_share") + values.scalar(0, "time_exploring_share"),
+                1.0, 1e-9)
+        << navigation;
+  }
+}
+
 // robot_world_test.cpp has barriers that come up in the course of a run.
 TEST_F(ForagerLife, ABlockedCorridorIsNotPassedUntilItOpens) {
   const std::string longer = with(team, "duration_s = 600", "duration_s = 900");

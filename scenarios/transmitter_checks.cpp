@@ -29,6 +29,16 @@ std::size_t message_bytes_max(const Scenario& scenario) {
   return most;
 }
 
+// The largest packet of a forager that talks, in bytes; 0 if there are none.
+std::size_t crumbs_bytes_max(const Scenario& scenario) {
+  int most = 0;
+  for (const AgentSpec& agent : scenario.agents) {
+    if (!agent.trails || agent.talk.policy == "never") continue;
+    most = std::max(most, agent.trails->packet_bytes_max);
+  }
+  return static_cast<std::size_t>(most);
+}
+
 // What a service makes of a message of so many bytes; its summaries are packets, too.
 std::size_t carried_bytes_max(const Scenario& scenario, std::size_t message) {
   const std::string& service = scenario.agents.front().talk.service;  // as all others have
@@ -45,14 +55,18 @@ std::size_t carried_bytes_max(const Scenario& scenario, std::size_t message) {
 void check_queue(const ScenarioUnderCheck& file, const KeyPath& path) {
   const RadioSpec& radio = file.scenario.radio;
   if (!radio.queue_bytes_max) return;
-  const std::size_t message = carried_bytes_max(file.scenario, message_bytes_max(file.scenario));
+  const std::size_t crumbs = crumbs_bytes_max(file.scenario);
+  const std::size_t message =
+      std::max(crumbs, carried_bytes_max(file.scenario, message_bytes_max(file.scenario)));
   const auto mtu = static_cast<std::size_t>(radio.mtu_bytes.value_or(1 << 30));
   const std::size_t frames = message == 0 ? 1 : (message - 1) / mtu + 1;
   const std::size_t packet = message + frames * static_cast<std::size_t>(radio.header_bytes);
   if (static_cast<std::size_t>(*radio.queue_bytes_max) >= packet) return;
   refuse(file, path["queue_bytes_max"],
-         "smaller than one packet: a message of all beliefs, or a summary, takes " +
-             std::to_string(packet) + " bytes with headers");
+         std::string("smaller than one packet: ") +
+             (crumbs > 0 ? "one of packet_bytes_max of a forager"
+                         : "a message of all beliefs, or a summary,") +
+             " takes " + std::to_string(packet) + " bytes with headers");
 }
 
 // A packet has at most frames_max frames.

@@ -16,6 +16,8 @@ namespace {
 constexpr std::size_t events_max = 16;  // of a task
 constexpr double steps_max = 1e9;       // of control or talk, in a run
 constexpr double rays_max = 1e7;        // of all robots
+constexpr double way_max_m = 1e3;       // of a robot within a period of control
+constexpr double turned_max_rad = 1e2;  // the same
 constexpr double crumbs_max = 1e8;      // in the memories of all robots
 
 bool is_forager(const AgentSpec& agent) { return agent.kind == "forager"; }
@@ -169,6 +171,14 @@ void ForagerChecker::check_robot(const AgentSpec& agent, const KeyPath& path) {
   }
   if (*s_.duration_s / robot.control_period_s > steps_max) {
     fail(path["control_period_s"], "more than 1e9 steps in a run");
+  }
+  if (robot.speed_m_per_s * robot.control_period_s > way_max_m) {
+    fail(path["control_period_s"],
+         "at " + to_toml(robot.speed_m_per_s) + " m/s it drives more than 1000 m within it");
+  }
+  if (robot.turn_rad_per_s * robot.control_period_s > turned_max_rad) {
+    fail(path["control_period_s"],
+         "at " + to_toml(robot.turn_rad_per_s) + " rad/s it turns by more than 100 rad within it");
   }
   rays_ += 1.0 * agent.count * robot.rays;
   if (rays_ > rays_max) fail(path, "more than 1e7 rays, for all foragers together; lower rays");

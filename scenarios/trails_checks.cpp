@@ -21,6 +21,12 @@ void check_laying(const ScenarioUnderCheck& file, const TrailsSpec& spec, const 
   if (spec.trail_crumbs_max && at_once) {
     file.fail(path["trail_crumbs_max"], "only for laying = \"completed\"" + found_laying(spec));
   }
+  if (spec.life_arrivals == 1 && !at_once) {
+    file.fail(
+        path["life_arrivals"],
+        "1 needs laying = \"at-once\": a trail that is told at an arrival has that behind it" +
+            found_laying(spec));
+  }
   if (spec.lanes != "none" && !at_once) {
     file.fail(path["lanes"],
               "\"" + spec.lanes +

@@ -252,6 +252,13 @@ TEST_F(ForagerChecks, ARobotIsSomethingThatARunCanBear) {
   EXPECT_EQ(robot("control_period_s = 6e-7"), "no error");
   EXPECT_EQ(robot("control_period_s = 5e-7"),
             "s.toml:10: agents[0].robot.control_period_s: more than 1e9 steps in a run");
+  EXPECT_EQ(robot("speed_m_per_s = 500, control_period_s = 2"), "no error");
+  EXPECT_EQ(robot("speed_m_per_s = 500, control_period_s = 2.1"),
+            "s.toml:10: agents[0].robot.control_period_s: at 500.0 m/s it drives more than 1000 m "
+            "within it");
+  EXPECT_EQ(robot("turn_rad_per_s = 1000, control_period_s = 0.11"),
+            "s.toml:10: agents[0].robot.control_period_s: at 1000.0 rad/s it turns by more than "
+            "100 rad within it");
   EXPECT_EQ(changed("count = 4", "count = 24414"), "no error");
   EXPECT_EQ(changed("count = 4", "count = 24415"),
             "s.toml:12: agents[0].trails: more than 1e8 crumbs, for all foragers together; lower "
@@ -320,6 +327,17 @@ TEST_F(ForagerChecks, TalkIsOfCrumbs) {
             "distances before");
 }
 
+TEST_F(ForagerChecks, AQueueHoldsAPacket) {
+  const auto queue = [](const std::string& bytes) {
+    return changed("topology = \"full\"",
+                   "topology = \"full\"\nheader_bytes = 8\nqueue_bytes_max = " + bytes);
+  };
+  EXPECT_EQ(queue("1408"), "no error");
+  EXPECT_EQ(queue("1407"),
+            "s.toml:8: radio.queue_bytes_max = 1407: smaller than one packet: one of "
+            "packet_bytes_max of a forager takes 1408 bytes with headers");
+}
+
 TEST_F(ForagerChecks, TrailsSayNothingWithoutEffect) {
   const std::string at = "s.toml:12: agents[0].trails.";
   EXPECT_EQ(trails("trail_crumbs_max = 9"),
@@ -332,6 +350,10 @@ TEST_F(ForagerChecks, TrailsSayNothingWithoutEffect) {
             at + "lanes: \"highway\" needs laying = \"at-once\", whose crumbs say where their "
                  "robot was going; found \"completed\", by parameters \"thesis-2019-code\"");
   EXPECT_EQ(trails("lanes = \"so-lost\", field_rad = 1"), "no error");
+  EXPECT_EQ(trails("life_arrivals = 1"), "no error");
+  EXPECT_EQ(trails("parameters = \"thesis-2019-code\", life_arrivals = 1"),
+            at + "life_arrivals: 1 needs laying = \"at-once\": a trail that is told at an arrival "
+                 "has that behind it; found \"completed\", by parameters \"thesis-2019-code\"");
   for (const char* key :
        {"lanes = \"so-lost\"", "field_rad = 1", "random_chance = 0.5", "random_falls_by = 0.5"}) {
     const std::string text(key);

@@ -221,17 +221,19 @@ void ForagerAgent::carry_radio() {
 }
 
 void ForagerAgent::tell() {
-  const auto packets = estimator_.speech(now_s());
-  for (std::size_t part = 0; part < packets.size(); ++part) {
+  const auto step = static_cast<std::uint64_t>((context().now() - Time()) / options_.period);
+  if (step != told_step_) parts_ = 0;
+  told_step_ = step;
+  for (const auto& bytes : estimator_.speech(now_s())) {
     Outgoing packet;
     packet.kind = message_kind_;
-    packet.bytes = packets[part];
-    // Each packet has channel draws of its own, and takes no other's place in a queue.
-    packet.tick = messages_ * packets_a_message_max + part;
+    packet.bytes = bytes;
+    // Channel draws go by the time of talking: what else was said shifts none. Each packet has its
+    // own, and takes no other's place in a queue.
+    packet.tick = step * packets_a_step_max + parts_++;
     packet.subject = *packet.tick;
     if (!context().send(packet)) ++not_sent_;
   }
-  if (!packets.empty()) ++messages_;
 }
 
 void ForagerAgent::on_packet(const Packet& packet) {

@@ -56,8 +56,10 @@ class ForagerAgent final : public Agent {
     Telling telling = Telling::at_once;
     std::optional<PeriodicTalk> talk;  ///< of Telling::periodic
   };
-  /// Packets are numbered by message and part: a message takes fewer than these.
-  static constexpr std::uint64_t packets_a_message_max = std::uint64_t{1} << 20;
+  /// Packets are numbered by the step of control in which they are sent, and in it: a run has no
+  /// more steps than `steps_max`, and a step not so many packets.
+  static constexpr std::uint64_t steps_max = std::uint64_t{1} << 28;
+  static constexpr std::uint64_t packets_a_step_max = std::uint64_t{1} << 20;
 
   /// World and witness outlive the agent.
   ForagerAgent(Context& context, RobotWorld& world, TrailWitness& witness, const Options& options);
@@ -117,7 +119,7 @@ class ForagerAgent final : public Agent {
   std::size_t aim_ = 0;
   double way_s_ = 0.0;  ///< driven without turning
   bool has_made_trip_ = false, waits_ = false, to_put_back_ = false, radio_moves_ = false;
-  std::uint64_t messages_ = 0, times_put_back_ = 0, not_sent_ = 0;
+  std::uint64_t told_step_ = 0, parts_ = 0, times_put_back_ = 0, not_sent_ = 0;
   plan::Path map_way_;
   std::size_t map_next_ = 0;
   std::optional<Time> map_made_;

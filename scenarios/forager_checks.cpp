@@ -14,7 +14,7 @@ namespace hearsay {
 namespace {
 
 constexpr std::size_t events_max = 16;  // of a task
-constexpr double steps_max = 1e9;       // of control or talk, in a run
+constexpr double steps_max = 2e8;       // of control or talk, in a run
 constexpr double rays_max = 1e7;        // of all robots
 constexpr double way_max_m = 1e3;       // of a robot within a period of control
 constexpr double turned_max_rad = 1e2;  // the same
@@ -170,7 +170,7 @@ void ForagerChecker::check_robot(const AgentSpec& agent, const KeyPath& path) {
     fail(path["start"], "missing; a place of the plan, or \"anywhere\"");
   }
   if (*s_.duration_s / robot.control_period_s > steps_max) {
-    fail(path["control_period_s"], "more than 1e9 steps in a run");
+    fail(path["control_period_s"], "more than 2e8 steps in a run");
   }
   if (robot.speed_m_per_s * robot.control_period_s > way_max_m) {
     fail(path["control_period_s"],
@@ -211,7 +211,7 @@ void ForagerChecker::check_talk(const AgentSpec& agent, const KeyPath& path) con
          "trail that is told when it is completed have no distances before");
   }
   if (talk.policy == "periodic" && *s_.duration_s / talk.period_s > steps_max) {
-    fail(path["period_s"], "more than 1e9 talks in a run");
+    fail(path["period_s"], "more than 2e8 talks in a run");
   }
   if (talk.content != "belief") {
     fail(path["content"], kind + "says whole crumbs; found " + quoted(talk.content));

@@ -251,7 +251,7 @@ TEST_F(ForagerChecks, ARobotIsSomethingThatARunCanBear) {
   EXPECT_EQ(robot("rays = 7"), "s.toml:10: agents[0].robot.rays = 7: must be between 8 and 4096");
   EXPECT_EQ(robot("control_period_s = 6e-7"), "no error");
   EXPECT_EQ(robot("control_period_s = 5e-7"),
-            "s.toml:10: agents[0].robot.control_period_s: more than 1e9 steps in a run");
+            "s.toml:10: agents[0].robot.control_period_s: more than 2e8 steps in a run");
   EXPECT_EQ(robot("speed_m_per_s = 500, control_period_s = 2"), "no error");
   EXPECT_EQ(robot("speed_m_per_s = 500, control_period_s = 2.1"),
             "s.toml:10: agents[0].robot.control_period_s: at 500.0 m/s it drives more than 1000 m "
@@ -314,7 +314,7 @@ TEST_F(ForagerChecks, TalkIsOfCrumbs) {
             "s.toml:13: agents[0].talk.policy: kind \"forager\" knows \"at-once\", \"at-event\", "
             "\"periodic\" and \"never\" alone; found \"on-update\"");
   EXPECT_EQ(talk("policy = \"periodic\", period_s = 5e-7"),
-            "s.toml:13: agents[0].talk.period_s: more than 1e9 talks in a run");
+            "s.toml:13: agents[0].talk.period_s: more than 2e8 talks in a run");
   EXPECT_EQ(talk("content = \"diagonal\""),
             "s.toml:13: agents[0].talk.content: kind \"forager\" says whole crumbs; found "
             "\"diagonal\"");

@@ -24,29 +24,31 @@ MetricIndex::MetricIndex(const Options& options) : cell_m_(options.cell_m) {
 
 void MetricIndex::add(std::uint32_t slot, const Point& at) {
   require(MetricSpace::sound(at), "metric index: a position that is not sound");
+  require(slot < unused, "metric index: a slot that cannot be");
   if (slot >= nodes_.size()) nodes_.resize(std::size_t{slot} + 1);
-  require(!nodes_[slot].used, "metric index: the slot is in use");
-  nodes_[slot] = {at, cell_number(at.x_m, cell_m_), cell_number(at.y_m, cell_m_), none, none, true};
+  require(nodes_[slot].before == unused, "metric index: the slot is in use");
+  nodes_[slot].at = at;
   link(slot);
   if (++size_ > heads_.size()) resize_lists(bits_ + 1);
 }
 
 void MetricIndex::remove(std::uint32_t slot) {
-  require(slot < nodes_.size() && nodes_[slot].used, "metric index: the slot is not in use");
+  require(slot < nodes_.size() && nodes_[slot].before != unused,
+          "metric index: the slot is not in use");
   Node& node = nodes_[slot];
   if (node.before == none) {
-    heads_[list_of(node.column, node.row)] = node.next;
+    heads_[list_of(cell_of(node.at))] = node.next;
   } else {
     nodes_[node.before].next = node.next;
   }
   if (node.next != none) nodes_[node.next].before = node.before;
-  node.used = false;
+  node.before = unused;
   --size_;
 }
 
 void MetricIndex::link(std::uint32_t slot) {
   Node& node = nodes_[slot];
-  std::uint32_t& head = heads_[list_of(node.column, node.row)];
+  std::uint32_t& head = heads_[list_of(cell_of(node.at))];
   node.next = head;
   node.before = none;
   if (head != none) nodes_[head].before = slot;
@@ -59,7 +61,7 @@ void MetricIndex::resize_lists(std::uint32_t bits) {
   stride_ = (2654435769U >> (32 - bits)) | 1U;  // 2^32/φ: rows lie far apart in the lists
   heads_.assign(std::size_t{mask_} + 1, none);
   for (std::uint32_t slot = 0; slot < nodes_.size(); ++slot) {
-    if (nodes_[slot].used) link(slot);
+    if (nodes_[slot].before != unused) link(slot);
   }
 }
 
@@ -79,11 +81,25 @@ MetricIndex::Sight::Sight(const MetricReach& reach)
   edge_cos = math::cos(0.5 * field.width_rad);
 }
 
-bool MetricIndex::Sight::sees(const Point& p) const {
-  const double x = double{p.x_m} - double{at.x_m}, y = double{p.y_m} - double{at.y_m};
-  const double squared = x * x + y * y;
-  if (!(squared < radius_squared)) return false;
-  return !has_field || x * heading_x + y * heading_y >= edge_cos * std::sqrt(squared);
+MetricIndex::Cell MetricIndex::cell_of(const Point& at) const {
+  return {cell_number(at.x_m, cell_m_), cell_number(at.y_m, cell_m_)};
+}
+
+bool MetricIndex::is_in(const Point& at, const Cell& cell) const {
+  const Cell of = cell_of(at);
+  return of.column == cell.column && of.row == cell.row;
+}
+
+bool MetricIndex::lists_shared(const Block& block) const {
+  // A block has no more columns than there are lists. Rows apart by so many lie so far apart in the
+  // lists, one way round or the other.
+  const auto columns = static_cast<std::uint32_t>(block.last.column - block.first.column) + 1;
+  const auto rows = static_cast<std::uint32_t>(block.last.row - block.first.row) + 1;
+  for (std::uint32_t apart = 1; apart < rows; ++apart) {
+    const std::uint32_t lists = (apart * stride_) & mask_;
+    if (lists < columns || mask_ + 1 - lists < columns) return true;
+  }
+  return false;
 }
 
 MetricIndex::Block MetricIndex::block_of(const Sight& sight) const {
@@ -95,8 +111,9 @@ MetricIndex::Block MetricIndex::block_of(const Sight& sight) const {
   const double last_row = std::floor((sight.at.y_m + radius_m) / cell_m_);
   const double cells = (last_column - column + 1.0) * (last_row - row + 1.0);
   if (!(cells < static_cast<double>(std::max<std::size_t>(size_, 9)))) return {.all = true};
-  return {false, static_cast<std::int32_t>(column), static_cast<std::int32_t>(last_column),
-          static_cast<std::int32_t>(row), static_cast<std::int32_t>(last_row)};
+  return {false,
+          {static_cast<std::int32_t>(column), static_cast<std::int32_t>(row)},
+          {static_cast<std::int32_t>(last_column), static_cast<std::int32_t>(last_row)}};
 }
 
 }  // namespace hearsay::trails

@@ -4,6 +4,7 @@
 // positions and a least similarity as its reach, and no frames to be transformed.
 #pragma once
 
+#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -63,7 +64,8 @@ struct MetricReach {
 /// Points in square cells, each cell a linked list; cells are found by a lattice that repeats
 /// itself only after as many cells as there are points or more, along rows and along columns:
 /// list = (column + row · stride) mod lists. A query looks at lists of the cells it touches alone,
-/// if these are fewer than the points; else at each point.
+/// if these are fewer than the points; else at each point. Small blocks of cells have a list each,
+/// so that a point found near need not tell of which cell it is.
 class MetricIndex {
  public:
   struct Options {
@@ -83,29 +85,38 @@ class MetricIndex {
   template <typename F>
   void visit(const MetricReach& reach, F&& f) const {
     const Sight sight(reach);
-    look(sight, [&](std::uint32_t slot, bool same_cell) {
-      if (same_cell && sight.sees(nodes_[slot].at)) f(slot);
+    look(sight, [&](std::uint32_t slot, const Cell* cell) {
+      const Point& at = nodes_[slot].at;
+      if (sight.sees(at) && (cell == nullptr || is_in(at, *cell))) f(slot);
     });
   }
   /// How many points such a visit looks at: its cost.
   std::size_t looks(const MetricReach& reach) const {
     std::size_t count = 0;
-    look(Sight(reach), [&](std::uint32_t, bool) { ++count; });
+    look(Sight(reach), [&](std::uint32_t, const Cell*) { ++count; });
     return count;
   }
 
  private:
   static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+  static constexpr std::uint32_t unused = none - 1;
   struct Node {
     Point at;
+    std::uint32_t next = none;
+    std::uint32_t before = unused;  ///< in its list; says, too, whether the slot is in use
+  };
+  struct Cell {
     std::int32_t column = 0, row = 0;
-    std::uint32_t next = none, before = none;
-    bool used = false;
   };
   /// A reach, ready to be asked.
   struct Sight {
     explicit Sight(const MetricReach& reach);
-    bool sees(const Point& p) const;
+    bool sees(const Point& p) const {
+      const double x = double{p.x_m} - double{at.x_m}, y = double{p.y_m} - double{at.y_m};
+      const double squared = x * x + y * y;
+      if (!(squared < radius_squared)) return false;
+      return !has_field || x * heading_x + y * heading_y >= edge_cos * std::sqrt(squared);
+    }
     Point at;
     double radius_m, radius_squared;
     bool has_field = false;
@@ -113,31 +124,38 @@ class MetricIndex {
   };
   struct Block {
     bool all = false;
-    std::int32_t column = 0, last_column = 0, row = 0, last_row = 0;
+    Cell first, last;
   };
-  /// Calls f(slot, whether it lies in a cell of the block) for all points that are looked at; a
-  /// list is looked at once for each cell of the block that is filed in it.
+  /// Calls f(slot, cell) for all points that are looked at: with the cell for which, if a list may
+  /// be looked at for several, else with null.
   template <typename F>
   void look(const Sight& sight, F&& f) const {
     const Block block = block_of(sight);
     if (block.all) {
       for (std::uint32_t slot = 0; slot < nodes_.size(); ++slot) {
-        if (nodes_[slot].used) f(slot, true);
+        if (nodes_[slot].before != unused) f(slot, nullptr);
       }
       return;
     }
-    for (std::int32_t row = block.row; row <= block.last_row; ++row) {
-      for (std::int32_t column = block.column; column <= block.last_column; ++column) {
-        for (std::uint32_t slot = heads_[list_of(column, row)]; slot != none;
-             slot = nodes_[slot].next) {
-          f(slot, nodes_[slot].column == column && nodes_[slot].row == row);
+    const bool shared = lists_shared(block);
+    Cell cell;
+    for (cell.row = block.first.row; cell.row <= block.last.row; ++cell.row) {
+      for (cell.column = block.first.column; cell.column <= block.last.column; ++cell.column) {
+        for (std::uint32_t slot = heads_[list_of(cell)]; slot != none; slot = nodes_[slot].next) {
+          f(slot, shared ? &cell : nullptr);
         }
       }
     }
   }
   Block block_of(const Sight& sight) const;
-  std::uint32_t list_of(std::int32_t column, std::int32_t row) const {
-    return (static_cast<std::uint32_t>(column) + static_cast<std::uint32_t>(row) * stride_) & mask_;
+  /// Whether two cells of a block are filed in one list.
+  bool lists_shared(const Block& block) const;
+  Cell cell_of(const Point& at) const;
+  bool is_in(const Point& at, const Cell& cell) const;
+  std::uint32_t list_of(const Cell& cell) const {
+    return (static_cast<std::uint32_t>(cell.column) +
+            static_cast<std::uint32_t>(cell.row) * stride_) &
+           mask_;
   }
   void link(std::uint32_t slot);
   void resize_lists(std::uint32_t bits);

@@ -43,7 +43,7 @@ EXPONENT_WITHIN = 0.1
 # How the cost of a look for a crumb may grow: sizes, of what, and the exponent it stays below. It does not depend on
 # how many are alive, but for caches.
 LOOKS = {"alive": ((1000, 10000, 100000), "alive, ten in reach", 0.15),
-         "reach": ((10, 100, 1000), "in reach, 10,000 alive", 1.1)}
+         "reach": ((10, 100, 1000), "in reach, 10,000 alive", 1.25)}
 COUNTERS = {"bytes_per_process": "bytes a process", "bytes_per_agent": "bytes an agent", "bytes/row": "bytes a row",
             "in_reach": "in reach",
             "allocations": "allocations a call"}

@@ -22,12 +22,13 @@ MetricIndex::MetricIndex(const Options& options) : cell_m_(options.cell_m) {
   resize_lists(bits_least);
 }
 
-void MetricIndex::add(std::uint32_t slot, const Point& at) {
+void MetricIndex::add(std::uint32_t slot, EventId event, const Point& at) {
   require(MetricSpace::sound(at), "metric index: a position that is not sound");
   require(slot < unused, "metric index: a slot that cannot be");
   if (slot >= nodes_.size()) nodes_.resize(std::size_t{slot} + 1);
   require(nodes_[slot].before == unused, "metric index: the slot is in use");
   nodes_[slot].at = at;
+  nodes_[slot].event = event;
   link(slot);
   if (++size_ > heads_.size()) resize_lists(bits_ + 1);
 }
@@ -37,7 +38,7 @@ void MetricIndex::remove(std::uint32_t slot) {
           "metric index: the slot is not in use");
   Node& node = nodes_[slot];
   if (node.before == none) {
-    heads_[list_of(cell_of(node.at))] = node.next;
+    heads_[list_of(node.event, cell_of(node.at))] = node.next;
   } else {
     nodes_[node.before].next = node.next;
   }
@@ -48,7 +49,7 @@ void MetricIndex::remove(std::uint32_t slot) {
 
 void MetricIndex::link(std::uint32_t slot) {
   Node& node = nodes_[slot];
-  std::uint32_t& head = heads_[list_of(cell_of(node.at))];
+  std::uint32_t& head = heads_[list_of(node.event, cell_of(node.at))];
   node.next = head;
   node.before = none;
   if (head != none) nodes_[head].before = slot;

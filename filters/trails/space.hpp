@@ -13,13 +13,17 @@
 #include <span>
 #include <vector>
 
+#include "filters/trails/trail.hpp"
+
 namespace hearsay::trails {
 
 /// What TrailStore and the codec ask of a space S:
 /// - S::Position: a value, equality-comparable.
 /// - S::Reach: what "near" means in one query, with the robot's own position in it.
-/// - S::Index(S::Options): positions by slot (0, 1, 2, …; a slot has one position at a time). add()
-///   and remove() them; visit(reach, f) calls f(slot) once for each slot near, in any order.
+/// - S::Index(S::Options): positions by slot (0, 1, 2, …; a slot has one position at a time), each
+/// of
+///   an event. add() and remove() them; visit(event, reach, f) calls f(slot) once for each slot of
+///   that event near, in any order.
 /// - S::numbers: floats a position takes on the air, written and read by put() and get().
 /// - S::sound(position): whether the index can hold it. What is not sound is refused, so that
 ///   nothing that was heard can do harm.
@@ -27,11 +31,11 @@ template <typename S>
 concept LocalizationSpace = std::equality_comparable<typename S::Position> &&
     std::constructible_from<typename S::Index, const typename S::Options&> &&
     requires(typename S::Index index, const typename S::Index& fixed, std::uint32_t slot,
-             const typename S::Position& position, const typename S::Reach& reach,
+             EventId event, const typename S::Position& position, const typename S::Reach& reach,
              void (*f)(std::uint32_t), std::span<float> out, std::span<const float> in) {
-  index.add(slot, position);
+  index.add(slot, event, position);
   index.remove(slot);
-  fixed.visit(reach, f);
+  fixed.visit(event, reach, f);
   { S::sound(position) } -> std::same_as<bool>;
   S::put(position, out);
   { S::get(in) } -> std::same_as<typename S::Position>;
@@ -61,11 +65,11 @@ struct MetricReach {
   std::optional<Field> field = std::nullopt;
 };
 
-/// Points in square cells, each cell a linked list; cells are found by a lattice that repeats
-/// itself only after as many cells as there are points or more, along rows and along columns:
-/// list = (column + row · stride) mod lists. A query looks at lists of the cells it touches alone,
-/// if these are fewer than the points; else at each point. Small blocks of cells have a list each,
-/// so that a point found near need not tell of which cell it is.
+/// Points in square cells, each cell a linked list for each event; cells are found by a lattice
+/// that repeats itself only after as many cells as there are points or more, along rows and along
+/// columns: list = (column + row · stride + event · shift) mod lists. A query looks at lists of the
+/// cells it touches alone, if these are fewer than the points; else at each point. Small blocks of
+/// cells have a list each, so that a point found near need not tell of which cell it is.
 class MetricIndex {
  public:
   struct Options {
@@ -75,7 +79,7 @@ class MetricIndex {
   explicit MetricIndex(const Options& options);
 
   /// @throws BrokenInvariant for a slot in use, or a position that is not sound.
-  void add(std::uint32_t slot, const Point& at);
+  void add(std::uint32_t slot, EventId event, const Point& at);
   /// @throws BrokenInvariant for a slot not in use.
   void remove(std::uint32_t slot);
   std::size_t size() const { return size_; }
@@ -83,25 +87,28 @@ class MetricIndex {
   /// @throws BrokenInvariant for a position that is not sound, a radius that is negative or no
   /// number, or a field outside its range.
   template <typename F>
-  void visit(const MetricReach& reach, F&& f) const {
+  void visit(EventId event, const MetricReach& reach, F&& f) const {
     const Sight sight(reach);
-    look(sight, [&](std::uint32_t slot, const Cell* cell) {
-      const Point& at = nodes_[slot].at;
-      if (sight.sees(at) && (cell == nullptr || is_in(at, *cell))) f(slot);
+    look(event, sight, [&](std::uint32_t slot, const Cell* cell) {
+      const Node& node = nodes_[slot];
+      if (node.event != event || !sight.sees(node.at)) return;
+      if (cell == nullptr || is_in(node.at, *cell)) f(slot);
     });
   }
   /// How many points such a visit looks at: its cost.
-  std::size_t looks(const MetricReach& reach) const {
+  std::size_t looks(EventId event, const MetricReach& reach) const {
     std::size_t count = 0;
-    look(Sight(reach), [&](std::uint32_t, const Cell*) { ++count; });
+    look(event, Sight(reach), [&](std::uint32_t, const Cell*) { ++count; });
     return count;
   }
 
  private:
   static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
   static constexpr std::uint32_t unused = none - 1;
+  static constexpr std::uint32_t shift = 0x9e3779b1U;  ///< events lie far apart in the lists, too
   struct Node {
     Point at;
+    EventId event = no_event;
     std::uint32_t next = none;
     std::uint32_t before = unused;  ///< in its list; says, too, whether the slot is in use
   };
@@ -129,7 +136,7 @@ class MetricIndex {
   /// Calls f(slot, cell) for all points that are looked at: with the cell for which, if a list may
   /// be looked at for several, else with null.
   template <typename F>
-  void look(const Sight& sight, F&& f) const {
+  void look(EventId event, const Sight& sight, F&& f) const {
     const Block block = block_of(sight);
     if (block.all) {
       for (std::uint32_t slot = 0; slot < nodes_.size(); ++slot) {
@@ -141,7 +148,8 @@ class MetricIndex {
     Cell cell;
     for (cell.row = block.first.row; cell.row <= block.last.row; ++cell.row) {
       for (cell.column = block.first.column; cell.column <= block.last.column; ++cell.column) {
-        for (std::uint32_t slot = heads_[list_of(cell)]; slot != none; slot = nodes_[slot].next) {
+        for (std::uint32_t slot = heads_[list_of(event, cell)]; slot != none;
+             slot = nodes_[slot].next) {
           f(slot, shared ? &cell : nullptr);
         }
       }
@@ -152,9 +160,9 @@ class MetricIndex {
   bool lists_shared(const Block& block) const;
   Cell cell_of(const Point& at) const;
   bool is_in(const Point& at, const Cell& cell) const;
-  std::uint32_t list_of(const Cell& cell) const {
+  std::uint32_t list_of(EventId event, const Cell& cell) const {
     return (static_cast<std::uint32_t>(cell.column) +
-            static_cast<std::uint32_t>(cell.row) * stride_) &
+            static_cast<std::uint32_t>(cell.row) * stride_ + event * shift) &
            mask_;
   }
   void link(std::uint32_t slot);

@@ -151,9 +151,8 @@ template <LocalizationSpace S>
 auto TrailStore<S>::best(EventId event, const Reach& reach, double now_s) -> const Crumb* {
   advance(now_s);
   const Crumb* found = nullptr;
-  index_.visit(reach, [&](std::uint32_t slot) {
+  index_.visit(event, reach, [&](std::uint32_t slot) {
     const Crumb& crumb = slots_[slot].crumb;
-    if (crumb.event != event) return;
     if (found == nullptr || follows_before(crumb, *found)) found = &crumb;
   });
   return found;
@@ -164,10 +163,12 @@ void TrailStore<S>::within(EventId event, const Reach& reach, double now_s,
                            std::vector<Crumb>& out) {
   advance(now_s);
   out.clear();
-  index_.visit(reach, [&](std::uint32_t slot) {
-    const Crumb& crumb = slots_[slot].crumb;
-    if (event == no_event || crumb.event == event) out.push_back(crumb);
-  });
+  const auto take = [&](std::uint32_t slot) { out.push_back(slots_[slot].crumb); };
+  if (event != no_event) {
+    index_.visit(event, reach, take);
+  } else {
+    for (const Event& each : events_) index_.visit(each.event, reach, take);
+  }
   std::sort(out.begin(), out.end(), follows_before<Position>);
 }
 
@@ -175,11 +176,12 @@ template <LocalizationSpace S>
 auto TrailStore<S>::opposing(EventId goal, const Reach& reach, double now_s) -> const Crumb* {
   advance(now_s);
   const Crumb* found = nullptr;
-  index_.visit(reach, [&](std::uint32_t slot) {
+  const auto compare = [&](std::uint32_t slot) {
     const Crumb& crumb = slots_[slot].crumb;
     if (crumb.goal == no_event || crumb.goal == goal) return;
     if (found == nullptr || age_of(*found) < age_of(crumb)) found = &crumb;
-  });
+  };
+  for (const Event& event : events_) index_.visit(event.event, reach, compare);
   return found;
 }
 
@@ -257,7 +259,7 @@ void TrailStore<S>::insert(const Crumb& crumb, RobotId from, Event& event) {
   slots_[slot] = {crumb, from, learned_++, last_, none};
   (last_ == none ? first_ : slots_[last_].next) = slot;
   last_ = slot;
-  index_.add(slot, crumb.position);
+  index_.add(slot, crumb.event, crumb.position);
   table_.insert(crumb.identity, slot);
   event.heap.push_back(slot);
   std::push_heap(event.heap.begin(), event.heap.end(), younger());

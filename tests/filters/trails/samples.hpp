@@ -82,20 +82,26 @@ struct ViewSpace {
   class Index {
    public:
     explicit Index(const Options&) {}
-    void add(std::uint32_t slot, const Position& view) {
+    void add(std::uint32_t slot, EventId event, const Position& view) {
       if (slot >= views_.size()) views_.resize(slot + 1);
-      views_[slot] = view;
+      views_[slot] = {event, view};
     }
-    void remove(std::uint32_t slot) { views_[slot] = Position{}; }
+    void remove(std::uint32_t slot) { views_[slot] = {}; }
     template <typename F>
-    void visit(const Reach& reach, F&& f) const {
+    void visit(EventId event, const Reach& reach, F&& f) const {
       for (std::uint32_t slot = 0; slot < views_.size(); ++slot) {
-        if (similarity(views_[slot], reach.seen) >= reach.similarity_min) f(slot);
+        const View& view = views_[slot];
+        if (view.event != event) continue;
+        if (similarity(view.seen, reach.seen) >= reach.similarity_min) f(slot);
       }
     }
 
    private:
-    std::vector<Position> views_;
+    struct View {
+      EventId event = no_event;
+      Position seen{};
+    };
+    std::vector<View> views_;
   };
   static bool sound(const Position& view) {
     bool some = false;

@@ -249,8 +249,8 @@ TEST_F(ForagerChecks, ARobotBeginsAtAPlace) {
 
 TEST_F(ForagerChecks, ARobotIsSomethingThatARunCanBear) {
   EXPECT_EQ(robot("rays = 7"), "s.toml:10: agents[0].robot.rays = 7: must be between 8 and 4096");
-  EXPECT_EQ(robot("control_period_s = 6e-7"), "no error");
-  EXPECT_EQ(robot("control_period_s = 5e-7"),
+  EXPECT_EQ(robot("control_period_s = 4e-6"), "no error");
+  EXPECT_EQ(robot("control_period_s = 2e-6"),
             "s.toml:10: agents[0].robot.control_period_s: more than 2e8 steps in a run");
   EXPECT_EQ(robot("speed_m_per_s = 500, control_period_s = 2"), "no error");
   EXPECT_EQ(robot("speed_m_per_s = 500, control_period_s = 2.1"),
@@ -313,7 +313,7 @@ TEST_F(ForagerChecks, TalkIsOfCrumbs) {
   EXPECT_EQ(talk("policy = \"on-update\""),
             "s.toml:13: agents[0].talk.policy: kind \"forager\" knows \"at-once\", \"at-event\", "
             "\"periodic\" and \"never\" alone; found \"on-update\"");
-  EXPECT_EQ(talk("policy = \"periodic\", period_s = 5e-7"),
+  EXPECT_EQ(talk("policy = \"periodic\", period_s = 2e-6"),
             "s.toml:13: agents[0].talk.period_s: more than 2e8 talks in a run");
   EXPECT_EQ(talk("content = \"diagonal\""),
             "s.toml:13: agents[0].talk.content: kind \"forager\" says whole crumbs; found "

@@ -168,8 +168,10 @@ constexpr std::array kMetrics = {
         "from its start; of agent −1: of all together"},
     MetricInfo{"distance_driven_m", kScalar, kMean, false,
                "of a forager: true way; of agent −1: of all together, m"},
-    MetricInfo{"trip_time_mean_s", kScalar, kMean, false,
-               "of a forager, and over the trips of all: mean time of a trip, s"},
+    MetricInfo{
+        "trip_time_mean_s", kScalar, kMean, false,
+        "of a forager, and over the trips of all: mean time of a trip since the robot last set "
+        "off, s"},
     MetricInfo{"trip_length_mean_m", kScalar, kMean, false, "the same: mean way of a trip, m"},
     MetricInfo{"first_arrival_s", kScalar, Aggregate::median, false,
                "of a forager: end of its first trip; of agent −1: of the first trip of all, s; "

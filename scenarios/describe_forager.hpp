@@ -102,7 +102,7 @@ void describe(V& v, TaskSpec& s) {
           "1 to 16 names of sources or places: it goes to them in turn, over and over");
   v.field("respawn", s.respawn, anything(), "after each event it is carried back to its start");
   v.field("wait_for_all", s.wait_for_all, anything(),
-          "after its first arrival it waits until all robots had one");
+          "its first trip is without trails; then it waits until all robots that are up had one");
 }
 
 template <class V>
@@ -121,7 +121,8 @@ template <class V>
 void describe(V& v, TrailsSpec& s) {
   v.field("parameters", s.parameters, one_of(trail_parameter_names()),
           "a published set of the values below that are not given; of one that is about views its "
-          "numbers count alone, not how it finds crumbs");
+          "numbers count alone, not how it finds crumbs; thesis-2019-code has true positions: "
+          "robot.frame = \"shared\", transform = \"as-is\"");
   v.field("navigation", s.navigation, one_of({"trails", "explore", "map"}),
           "by trails; as if it heard nothing; or by the shortest way, as if it knew the plan");
   v.field("exploration", s.exploration, one_of({"roam", "wall", "corridor"}),

@@ -184,14 +184,16 @@ std::unique_ptr<RobotWorld> make_robot_world(const Scenario& scenario, Simulatio
 }
 
 std::unique_ptr<TrailWitness> make_trail_witness(const Scenario& scenario, Simulation& simulation,
-                                                 const RobotWorld& world) {
+                                                 const RobotWorld& world,
+                                                 std::function<bool(AgentId)> up) {
   const auto first = std::find_if(scenario.agents.begin(), scenario.agents.end(), forages);
   return std::make_unique<TrailWitness>(
       simulation, world,
       TrailWitness::Options{.period = Duration::seconds(scenario.record.series_period_s),
                             .series = scenario.record.series,
                             .crumbs = scenario.record.crumbs == "on",
-                            .wrong_m = sense_radius_of(*first->trails)});
+                            .wrong_m = sense_radius_of(*first->trails),
+                            .up = std::move(up)});
 }
 
 ForagerAgent::Options forager_options(const AgentSpec& spec, const Scenario& scenario, AgentId id,

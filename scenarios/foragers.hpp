@@ -1,6 +1,7 @@
 // Robots that lay and follow trails, and the floor they drive on.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -21,8 +22,10 @@ std::vector<std::string> events_of(const Scenario& scenario);
 /// @throws InputError where there is no room for a robot.
 std::unique_ptr<RobotWorld> make_robot_world(const Scenario& scenario, Simulation& simulation);
 
+/// `up` says whether an agent is.
 std::unique_ptr<TrailWitness> make_trail_witness(const Scenario& scenario, Simulation& simulation,
-                                                 const RobotWorld& world);
+                                                 const RobotWorld& world,
+                                                 std::function<bool(AgentId)> up);
 
 /// All but when it talks. `robot`: its number on the floor.
 ForagerAgent::Options forager_options(const AgentSpec& spec, const Scenario& scenario, AgentId id,

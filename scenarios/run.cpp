@@ -185,7 +185,8 @@ void Run::build_agents(const Catalog& catalog) {
   }
   if (robot_world_) {
     record.agent(central_agent, "central", "central");
-    trail_witness_ = make_trail_witness(scenario, simulation_, *robot_world_);
+    trail_witness_ = make_trail_witness(scenario, simulation_, *robot_world_,
+                                        [this](AgentId id) { return radio_->up(id); });
   }
   if (has_localizers(scenario)) pose_witness_ = make_pose_witness(*prepared_, simulation_);
   for (std::size_t i = 0; i < prepared_->specs.size(); ++i) {

@@ -15,7 +15,7 @@ class TrailFollower {
  public:
   /// What it does where d of the best crumb is small, and the event has not happened.
   enum class TrailEnd {
-    explore,  ///< LOST 2002: leaves the trail, explores until the event
+    explore,  ///< LOST 2002: leaves the trail and explores, as long as the crumb is near
     search,   ///< Shamshirdar 2019: looks about near the crumb
     none,     ///< stays on the trail: trail shortening
   };

@@ -87,8 +87,9 @@ bool TrailWitness::arrived(int robot, trails::EventId event) {
 }
 
 bool TrailWitness::all_arrived() const {
-  return std::all_of(robots_.begin(), robots_.end(),
-                     [](const Robot& robot) { return robot.first_arrival.has_value(); });
+  return std::all_of(robots_.begin(), robots_.end(), [this](const Robot& robot) {
+    return robot.first_arrival || (options_.up && !options_.up(robot.mind.agent));
+  });
 }
 
 void TrailWitness::dropped(int robot) {

@@ -26,6 +26,7 @@ class TrailWitness {
     std::vector<std::string> series;  ///< names of metrics kept over time; others are ignored
     bool crumbs = false;              ///< an event for each crumb laid
     double wrong_m = 1.0;             ///< crumbs with more error are wrong, > 0
+    std::function<bool(AgentId)> up;  ///< whether an agent is; none: all always are
   };
   /// How a robot spent a step.
   enum class Doing { following, exploring, searching, panicking, waiting };
@@ -59,6 +60,7 @@ class TrailWitness {
   void gave_up(int robot) { robots_[index(robot)].dropped.clear(); }
   /// It learned crumbs from another robot.
   void learned(int robot, trails::RobotId from, std::span<const trails::Identity> crumbs);
+  /// Whether all robots that are up have had a trip.
   bool all_arrived() const;
 
   /// Schedules the samples up to the end of the run. Once, before it starts.

@@ -163,7 +163,7 @@ class BadCommandLine(Bed):
         self.refused("list", "rulez")
 
     def test_an_unknown_theme(self):
-        self.bad("there are: merino, mrclam, radio, rumour", "reproduce", "rumor")
+        self.bad("there are: lost, merino, mrclam, radio, rumour", "reproduce", "rumor")
         self.bad("'rumour/tree'; there are: rumour/dropouts-bitrate, rumour/dropouts-bursts", "reproduce",
                  "rumour/tree")
 

@@ -239,9 +239,7 @@ void ForagerAgent::tell() {
 void ForagerAgent::on_packet(const Packet& packet) {
   if (packet.kind != message_kind_) return;
   const auto crumbs = estimator_.heard(packet.bytes, now_s());
-  if (crumbs.empty()) return;
-  witness_.learned(options_.robot, trails::MetricPacket::parse(packet.bytes)->head().sender,
-                   crumbs);
+  if (!crumbs.empty()) witness_.learned(options_.robot, estimator_.heard_from(), crumbs);
 }
 
 void ForagerAgent::on_down() {

@@ -56,9 +56,8 @@ class ForagerAgent final : public Agent {
     Telling telling = Telling::at_once;
     std::optional<PeriodicTalk> talk;  ///< of Telling::periodic
   };
-  /// Packets are numbered by the step of control in which they are sent, and in it: a run has no
-  /// more steps than `steps_max`, and a step not so many packets.
-  static constexpr std::uint64_t steps_max = std::uint64_t{1} << 28;
+  /// Packets are numbered by the step of control in which they are sent, and in it: a run has at
+  /// most 2^28 steps, and a step not so many packets.
   static constexpr std::uint64_t packets_a_step_max = std::uint64_t{1} << 20;
 
   /// World and witness outlive the agent.

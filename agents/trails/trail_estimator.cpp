@@ -65,6 +65,7 @@ std::span<const trails::Identity> TrailEstimator::heard(std::span<const std::byt
     ++counts_.refused;
     return taken_;
   }
+  heard_from_ = packet->head().sender;
   places_.clear();
   for (std::size_t i = 0; i < packet->places(); ++i) places_.push_back(packet->place(i));
   trails::Similarity map;
@@ -83,7 +84,7 @@ std::span<const trails::Identity> TrailEstimator::heard(std::span<const std::byt
   for (std::size_t i = 0; i < packet->crumbs(); ++i) {
     const trails::Crumb crumb = mapped(packet->crumb(i), map);
     ++counts_.heard;
-    const auto fate = store_.merge(crumb, now_s, packet->head().sender);
+    const auto fate = store_.merge(crumb, now_s, heard_from_);
     if (fate == trails::Fate::taken) taken_.push_back(crumb.identity);
   }
   return taken_;

@@ -57,6 +57,8 @@ class TrailEstimator {
 
   /// A packet from another robot. @return what it taught: crumbs that are new.
   std::span<const trails::Identity> heard(std::span<const std::byte> bytes, double now_s);
+  /// Who sent the last packet that was one.
+  trails::RobotId heard_from() const { return heard_from_; }
   /// Packets with its places and all that is new since it last spoke; none if there is nothing.
   /// Valid until the next call.
   std::span<const std::vector<std::byte>> speech(double now_s);
@@ -83,6 +85,7 @@ class TrailEstimator {
   std::vector<trails::Place> places_;
   std::vector<trails::PointPair> pairs_;
   std::vector<trails::Identity> taken_;
+  trails::RobotId heard_from_ = trails::no_robot;
 };
 
 }  // namespace hearsay

@@ -1,12 +1,12 @@
 // Scenarios of explorers, their errors and what their runs leave.
 #pragma once
 
-#include <map>
 #include <memory>
 #include <string>
 #include <utility>
 
 #include "scenarios/run.hpp"
+#include "tests/scenarios/run_values.hpp"
 #include "tests/scenarios/temp_files.hpp"
 #include "tests/scenarios/with.hpp"
 
@@ -14,23 +14,7 @@ namespace hearsay {
 
 class ExplorerBed : public InTempDirectory {
  protected:
-  /// All that a record feeds to its digest.
-  struct DigestedBytes : DigestSink {
-    void update(std::span<const std::byte> bytes) override {
-      for (const std::byte byte : bytes) all += static_cast<char>(byte);
-    }
-    std::string all;
-  };
-  /// What a run left, by agent and name; series by time in seconds and subject.
-  struct Values {
-    std::map<std::pair<AgentId, std::string>, double> scalars;
-    std::map<std::pair<AgentId, std::string>, std::map<std::pair<double, std::string>, double>>
-        series;
-    std::string digested;
-
-    double scalar(AgentId agent, const std::string& name) const {
-      return scalars.at({agent, name});
-    }
+  struct Values : RunValues {
     /// The last value of a subject, "" for the whole.
     double last(AgentId agent, const std::string& name, const std::string& subject = "") const {
       double value = -1.0;
@@ -59,14 +43,7 @@ class ExplorerBed : public InTempDirectory {
     const RunEnd end = run.run();
     EXPECT_TRUE(end.ok()) << end.message;
     Values values;
-    const Record& record = run.record();
-    for (const ScalarRow& row : record.scalars()) {
-      values.scalars[{row.agent, record.text(row.name)}] = row.value;
-    }
-    for (const SeriesRow& row : record.series()) {
-      values.series[{row.agent, record.text(row.name)}]
-                   [{row.time.seconds(), record.text(row.subject)}] = row.value;
-    }
+    values.take(run.record());
     values.digested = digest.all;
     return values;
   }

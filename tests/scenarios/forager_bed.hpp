@@ -3,12 +3,12 @@
 
 #include <map>
 #include <memory>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "scenarios/run.hpp"
+#include "tests/scenarios/run_values.hpp"
 #include "tests/scenarios/temp_files.hpp"
 #include "tests/scenarios/with.hpp"
 
@@ -16,28 +16,14 @@ namespace hearsay {
 
 class ForagerBed : public InTempDirectory {
  protected:
-  struct DigestedBytes : DigestSink {
-    void update(std::span<const std::byte> bytes) override {
-      for (const std::byte byte : bytes) all += static_cast<char>(byte);
-    }
-    std::string all;
-  };
   struct Event {
     double time_s;
     AgentId agent;
     std::string kind, detail;
   };
-  /// What a run left, by agent and name; series by time in seconds and subject.
-  struct Values {
-    std::map<std::pair<AgentId, std::string>, double> scalars;
-    std::map<std::pair<AgentId, std::string>, std::map<std::pair<double, std::string>, double>>
-        series;
+  struct Values : RunValues {
     std::vector<Event> events;
-    std::string digested;
 
-    double scalar(AgentId agent, const std::string& name) const {
-      return scalars.at({agent, name});
-    }
     /// Over time.
     std::map<double, double> over_time(AgentId agent, const std::string& name) const {
       std::map<double, double> values;
@@ -78,13 +64,7 @@ class ForagerBed : public InTempDirectory {
     EXPECT_TRUE(end.ok()) << end.message;
     Values values;
     const Record& record = run.record();
-    for (const ScalarRow& row : record.scalars()) {
-      values.scalars[{row.agent, record.text(row.name)}] = row.value;
-    }
-    for (const SeriesRow& row : record.series()) {
-      values.series[{row.agent, record.text(row.name)}]
-                   [{row.time.seconds(), record.text(row.subject)}] = row.value;
-    }
+    values.take(record);
     for (const EventRow& row : record.events()) {
       values.events.push_back({row.time.seconds(), row.agent, record.text(row.kind), row.detail});
     }

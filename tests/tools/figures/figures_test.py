@@ -69,10 +69,6 @@ class Numbers(unittest.TestCase):
 
 
 class Curves(WithDatabase):
-    def chosen(self, **where):
-        database = data.Database(self.file)
-        return database.select(database.study(None), where)
-
     def test_error_is_the_root_of_the_mean_square_over_repetitions_and_agents(self):
         self.make()
         chosen = self.chosen(loss="0")

@@ -1,6 +1,5 @@
 """A small study of vehicles with certainty grids, with values that can be worked out by hand."""
 
-import re
 import sqlite3
 
 from small_study import WithDatabase  # first: it makes the scripts known
@@ -107,13 +106,3 @@ class WithGrids(WithDatabase):
                         )
         connection.commit()
         connection.close()
-
-    def said(self, script, *arguments):
-        """What a figure says, once it was drawn twice and alike."""
-        drawn = self.draw(script, "a.svg", *arguments)
-        self.assertTrue(drawn == self.draw(script, "b.svg", *arguments), "two drawings differ")
-        return " ".join(re.findall(r">([^<>\n]+)<", drawn.decode()))
-
-    def chosen(self, **where):
-        database = data.Database(self.file)
-        return database.select(database.study(None), where)

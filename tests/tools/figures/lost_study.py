@@ -1,6 +1,5 @@
 """A small study of foragers on a floor, with values that can be worked out by hand."""
 
-import re
 import sqlite3
 
 from small_study import WithDatabase  # first: it makes the scripts known
@@ -106,16 +105,6 @@ class WithForagers(WithDatabase):
                                                series_of(run, method, repetition, count))
         connection.commit()
         connection.close()
-
-    def said(self, script, *arguments):
-        """What a figure says, once it was drawn twice and alike."""
-        drawn = self.draw(script, "a.svg", *arguments)
-        self.assertTrue(drawn == self.draw(script, "b.svg", *arguments), "two drawings differ")
-        return " ".join(re.findall(r">([^<>\n]+)<", drawn.decode()))
-
-    def chosen(self, **where):
-        database = data.Database(self.file)
-        return database.select(database.study(None), where)
 
 
 def scalars_of(run, method, repetition, agents):

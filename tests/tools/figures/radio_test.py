@@ -330,10 +330,6 @@ class Figures(WithRadioDatabase):
                 self.assertTrue(words in text, f"{script} does not say {words!r}")
             self.assertTrue(text == self.draw(script, "b.svg").decode(), script)
 
-    def chosen(self):
-        database = data.Database(self.file)
-        return database.select(database.study(None), {})
-
     def test_nobody_in_reach_hears_nothing(self):
         self.distance()
         rows = distance.delivered(self.chosen(), "disk", ["30", "80"])

@@ -5,6 +5,7 @@ import contextlib
 import importlib
 import io
 import os
+import re
 import sqlite3
 import sys
 import tempfile
@@ -108,6 +109,16 @@ class WithDatabase(unittest.TestCase):
         self.assertEqual(self.run_script(script, self.file, output, *arguments), (0, "", ""))
         with open(self.path(output), "rb") as stream:
             return stream.read()
+
+    def said(self, script, *arguments):
+        """What a figure says, once it was drawn twice and alike."""
+        drawn = self.draw(script, "a.svg", *arguments)
+        self.assertTrue(drawn == self.draw(script, "b.svg", *arguments), "two drawings differ")
+        return " ".join(re.findall(r">([^<>\n]+)<", drawn.decode()))
+
+    def chosen(self, **where):
+        database = data.Database(self.file)
+        return database.select(database.study(None), where)
 
     def refused(self, script, *arguments):
         """What a script says on stderr when it refuses, without its name."""

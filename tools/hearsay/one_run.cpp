@@ -2,8 +2,21 @@
 
 #include <chrono>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 
 namespace hearsay::program {
+namespace {
+
+// In place of the path of a small file, what is in it. A file that went away since it was loaded
+// keeps its path, so that the hash is another.
+void hold_content(std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (path.empty() || !file) return;
+  path = text_digest(std::string(std::istreambuf_iterator<char>(file), {}));
+}
+
+}  // namespace
 
 FinishedRun execute(const std::shared_ptr<const PreparedScenario>& prepared, const Catalog& catalog,
                     std::uint64_t seed) {
@@ -30,6 +43,13 @@ std::string scenario_hash(Scenario scenario) {
   if (scenario.world.log) {
     std::string& directory = scenario.world.log->directory;
     directory = std::filesystem::path(directory + "/").parent_path().filename().string();
+  }
+  WorldSpec& world = scenario.world;
+  if (world.area && world.area->heights) hold_content(*world.area->heights);
+  if (world.plan) hold_content(world.plan->file);
+  hold_content(scenario.radio.contacts);
+  for (AgentSpec& agent : scenario.agents) {
+    if (agent.motion && agent.motion->file) hold_content(*agent.motion->file);
   }
   return text_digest(canonical_text(scenario));
 }

@@ -23,7 +23,8 @@ FinishedRun execute(const std::shared_ptr<const PreparedScenario>& prepared, con
 /// The reason of a run's end, or the message of its failure.
 std::string how_it_ended(const RunEnd& end);
 
-/// The config_hash of a scenario: of its content, whatever folder a log lies in.
+/// The config_hash of a scenario: of its content, that of the files it names with it, wherever they
+/// lie. Of a recorded data set the name of its folder counts alone.
 std::string scenario_hash(Scenario scenario);
 
 /// The version that goes with results: of the program.

@@ -8,7 +8,7 @@
 
 namespace hearsay {
 
-Context::Context(Simulation& simulation, Radio& radio, Identity identity, Service service)
+Context::Context(Simulation& simulation, RadioPort& radio, Identity identity, Service service)
     : simulation_(simulation), radio_(radio), identity_(std::move(identity)), service_(service) {}
 
 double Context::parameter(const std::string& name, double otherwise) const {

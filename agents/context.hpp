@@ -12,7 +12,7 @@
 
 #include "net/gossip.hpp"
 #include "net/movement.hpp"
-#include "net/radio.hpp"
+#include "net/radio_port.hpp"
 #include "sim/kernel/process.hpp"
 #include "sim/kernel/simulation.hpp"
 
@@ -33,8 +33,8 @@ class Context {
     Movement* steers = nullptr;  ///< what the agent is steered by, if it may be; not owned
   };
   /// `simulation`, `radio` and the service must outlive the context.
-  Context(Simulation& simulation, Radio& radio, Identity identity, Service service);
-  Context(Simulation& simulation, Radio& radio, Identity identity)
+  Context(Simulation& simulation, RadioPort& radio, Identity identity, Service service);
+  Context(Simulation& simulation, RadioPort& radio, Identity identity)
       : Context(simulation, radio, std::move(identity), Service()) {}
 
   AgentId id() const { return identity_.id; }
@@ -106,7 +106,7 @@ class Context {
   bool send_to_each(Outgoing packet);
 
   Simulation& simulation_;
-  Radio& radio_;
+  RadioPort& radio_;
   Identity identity_;
   Service service_;
   std::vector<AgentId> listeners_;  // of what is being said

@@ -10,19 +10,6 @@
 namespace hearsay {
 namespace {
 
-void record_looks(Context& context, const LookSums& sums) {
-  Record& record = context.simulation().record();
-  const auto scalar = [&](const char* name, double value) {
-    record.scalar(context.id(), record.name(name), value);
-  };
-  const double hits = sums.looks - sums.missed, compared = sums.compared;
-  scalar("looks_missed", sums.missed);
-  scalar("look_sigma_along_m", std::sqrt(sums.variance_along_m2 / hits));
-  scalar("look_sigma_across_m", std::sqrt(sums.variance_across_m2 / hits));
-  scalar("look_kl_nats", sums.kl_nats / compared);
-  scalar("look_variance_gap", sums.log_variance_ratio / compared);
-}
-
 // Messages of one kind are understood by all who encode theirs alike.
 const char* kind_of(gaussian::MessageForm form) {
   using gaussian::MessageForm;
@@ -50,7 +37,7 @@ gaussian::MessageForm form_of(const EstimatorAgent::Options& options) {
 
 }  // namespace
 
-EstimatorAgent::EstimatorAgent(Context& context, Witness& witness, Options options)
+EstimatorAgent::EstimatorAgent(Context& context, EstimatorWitness& witness, Options options)
     : Agent(context),
       witness_(witness),
       options_(std::move(options)),
@@ -61,7 +48,8 @@ EstimatorAgent::EstimatorAgent(Context& context, Witness& witness, Options optio
   witness_.watch(context.id(), *estimator_);
 }
 
-std::unique_ptr<Estimator> EstimatorAgent::make_estimator(Context& context, Witness& witness,
+std::unique_ptr<Estimator> EstimatorAgent::make_estimator(Context& context,
+                                                          EstimatorWitness& witness,
                                                           const Options& options) {
   if (!options.window) {
     return std::make_unique<GaussianEstimator>(
@@ -107,8 +95,6 @@ void EstimatorAgent::advance() {
 }
 
 void EstimatorAgent::start() {
-  if (!options_.sensors.empty()) spawn(look());
-  if (!options_.observations.empty()) spawn(replay());
   const bool speaks = gaussian::info(options_.rule).sends != gaussian::Sends::nothing;
   if (options_.talk && speaks) spawn(talk());
 }
@@ -126,55 +112,13 @@ void EstimatorAgent::on_up(bool forgets) {
   alone_.forget();
 }
 
-Process EstimatorAgent::look() {
-  Time next = options_.sensor_start;
-  for (std::uint64_t count = 0; next <= options_.sensor_end; ++count) {
-    co_await context().sleep_until(next, Phase::measure);
-    for (std::size_t s = 0; s < options_.sensors.size() && context().up(); ++s) {
-      const auto subject = static_cast<int>(s);
-      const auto information = look_at(subject, count);
-      if (information) measured(subject, *information);
-    }
-    next = next + options_.sensor_period;
-  }
-}
-
-std::optional<gaussian::Belief> EstimatorAgent::look_at(int subject, std::uint64_t count) {
-  const auto stream = [&](const char* purpose) {
-    return context().simulation().stream_at(
-        Purpose(purpose), Entity::sensor(context().id(), static_cast<std::uint32_t>(subject)),
-        count);
-  };
-  Sensor& sensor = options_.sensors[static_cast<std::size_t>(subject)];
-  aim(sensor, subject);
-  if (options_.range_max_m && distance_m(sensor) > *options_.range_max_m) return std::nullopt;
-  Stream draws = stream("sensor noise");
-  const auto information = measure(sensor, draws);
-  CameraSensor* const camera = std::get_if<CameraSensor>(&sensor);
-  if (camera && camera->compares()) {
-    Stream reference = stream("sensor reference");
-    camera->compare(reference);
-  }
-  return information;
-}
-
-void EstimatorAgent::aim(Sensor& sensor, int subject) {
-  if (options_.moves && (has_direction(sensor) || options_.range_max_m)) {
-    const Point place_m = context().position();
-    move_to(sensor, {place_m[0], place_m[1]});
-  }
-  if (!options_.motion) return;
-  const auto truth = options_.targets[static_cast<std::size_t>(subject)].truth_at(
-      options_.motion->stamp_at(context().now()), options_.dimension);
-  look_towards(sensor, {truth[0], truth[1]});
-}
-
-void EstimatorAgent::measured(int subject, const gaussian::Belief& information) {
+void EstimatorAgent::on_measurement(const Measurement& measurement) {
+  const int subject = measurement.subject;
   advance();
-  compare(subject, information);
-  const gaussian::Belief whole = gaussian::lifted(information, options_.dimension);
+  compare(subject, measurement.information);
+  const gaussian::Belief whole = gaussian::lifted(measurement.information, options_.dimension);
   alone_.measured(subject, whole, stamp());
-  estimator_->measured(subject, whole, witness_.measured(subject, whole));
+  estimator_->measured(subject, whole, measurement.index);
   measured_since_sent_ = true;
 }
 
@@ -201,25 +145,6 @@ void EstimatorAgent::finish() {
     ++seen;
   }
   record.scalar(context().id(), record.name("distance_saved_m"), saved_m / seen);
-  LookSums sums;
-  bool any = false;
-  for (const Sensor& sensor : options_.sensors) {
-    const CameraSensor* const camera = std::get_if<CameraSensor>(&sensor);
-    if (!camera) continue;
-    sums += camera->sums();
-    any = true;
-  }
-  if (any) record_looks(context(), sums);
-}
-
-Process EstimatorAgent::replay() {
-  for (const Observation& observation : options_.observations) {
-    if (observation.time > context().now()) {
-      co_await context().sleep_until(observation.time, Phase::measure);
-    }
-    if (!context().up()) continue;
-    measured(observation.subject, observation.information);
-  }
 }
 
 Process EstimatorAgent::talk() {

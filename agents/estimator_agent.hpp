@@ -1,4 +1,4 @@
-// The estimator agent: looks, updates, talks now and then, fuses what it hears.
+// The estimator agent: gets measurements, updates, talks now and then, fuses what it hears.
 #pragma once
 
 #include <memory>
@@ -8,23 +8,16 @@
 
 #include "agents/agent.hpp"
 #include "agents/alone.hpp"
+#include "agents/estimator_witness.hpp"
 #include "agents/estimators/gaussian.hpp"
-#include "agents/sensors/sensor.hpp"
+#include "agents/measurement.hpp"
 #include "agents/talk/periodic.hpp"
 #include "agents/talk/policy.hpp"
-#include "agents/witness.hpp"
 #include "filters/gaussian/fusion.hpp"
 
 namespace hearsay {
 
-/// A measurement known beforehand, such as one read from a log.
-struct Observation {
-  Time time;
-  int subject;
-  gaussian::Belief information;
-};
-
-class EstimatorAgent final : public Agent {
+class EstimatorAgent final : public Agent, public MeasurementReceiver {
  public:
   struct Options {
     gaussian::Rule rule = gaussian::Rule::none;
@@ -37,24 +30,14 @@ class EstimatorAgent final : public Agent {
     std::optional<MotionModel> motion;  ///< of the subjects; nothing: they stand still
     /// T in stamps: it believes in trajectories; nothing: in states as they are now.
     std::optional<int> window;
-    /// One a subject: each looks at every `sensor_period` from `sensor_start` to `sensor_end`.
-    std::vector<Sensor> sensors;
-    bool moves = false;                 ///< sensors go with the agent
-    std::optional<double> range_max_m;  ///< what is farther away is not seen; > 0
-    /// With a motion: where the subjects are, for the sensors. They outlive the agent.
-    std::span<const Subject> targets;
-    Duration sensor_period = Duration::nanoseconds(1'000'000'000);
-    Time sensor_start;
-    Time sensor_end = Time::never();
-    /// Measurements to replay, by time; they outlive the agent.
-    std::span<const Observation> observations;
     std::optional<PeriodicTalk> talk;  ///< the ticks; nothing: neither talks nor fuses at ticks
     TalkPolicy::Options policy;        ///< at which ticks it talks
     bool listens_only = false;         ///< at none: what it holds is fused then
   };
-  EstimatorAgent(Context& context, Witness& witness, Options options);
+  EstimatorAgent(Context& context, EstimatorWitness& witness, Options options);
 
   void start() override;
+  void on_measurement(const Measurement& measurement) override;
   void on_packet(const Packet& packet) override;
   void on_up(bool forgets) override;
   void finish() override;
@@ -62,27 +45,20 @@ class EstimatorAgent final : public Agent {
   const Estimator& estimator() const { return *estimator_; }
 
  private:
-  static std::unique_ptr<Estimator> make_estimator(Context& context, Witness& witness,
+  static std::unique_ptr<Estimator> make_estimator(Context& context, EstimatorWitness& witness,
                                                    const Options& options);
-  Process look();
-  /// The `count`-th look; nothing if the subject is too far away, or the look missed it.
-  std::optional<gaussian::Belief> look_at(int subject, std::uint64_t count);
-  /// From where the agent is, to where the subject is.
-  void aim(Sensor& sensor, int subject);
-  void measured(int subject, const gaussian::Belief& information);
   /// How far the measurement is from what is believed, just before it is used.
   void compare(int subject, const gaussian::Belief& information);
   /// Of the present; 0 where states stand still.
   std::int64_t stamp() const;
   /// Brings the estimator to the present.
   void advance();
-  Process replay();
   Process talk();
   std::uint64_t speak_or_not(std::uint64_t tick);
   void say(std::uint64_t tick);
   void say_to(AgentId receiver, std::uint64_t tick);
 
-  Witness& witness_;
+  EstimatorWitness& witness_;
   Options options_;
   std::unique_ptr<Estimator> estimator_;
   NameId message_kind_;

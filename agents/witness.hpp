@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "agents/agreement.hpp"
-#include "agents/estimator.hpp"
+#include "agents/estimator_witness.hpp"
 #include "agents/metrics.hpp"
 #include "sim/kernel/simulation.hpp"
 
@@ -30,7 +30,7 @@ struct Subject {
   std::span<const double> truth_at(std::int64_t stamp, int n) const;
 };
 
-class Witness {
+class Witness final : public EstimatorWitness {
  public:
   struct Options {
     std::vector<Subject> subjects;                ///< all of the same dimension n
@@ -47,16 +47,11 @@ class Witness {
   /// An agent made a measurement now. @return its index in the subject's book.
   std::size_t measured(int subject, const gaussian::Belief& information);
 
-  /// Distance from the mean of a belief about a subject to the truth now, m; NaN without a mean.
-  double distance_error_m(int subject, const gaussian::Belief& belief);
-
-  /// From now on `agent`'s beliefs are sampled. Agents in ascending number.
-  void watch(AgentId agent, Estimator& estimator);
-
-  /// For estimators: where their ledgers come from; nullptr if ledgers are off.
-  LedgerPool* ledgers() { return options_.ledger ? &pool_ : nullptr; }
-  /// For estimators: shared by all of the run.
-  EstimatorWorkspace& workspace() { return workspace_; }
+  double distance_error_m(int subject, const gaussian::Belief& belief) override;
+  void watch(AgentId agent, Estimator& estimator) override;
+  LedgerPool* ledgers() override { return options_.ledger ? &pool_ : nullptr; }
+  /// Shared by all of the run.
+  EstimatorWorkspace& workspace() override { return workspace_; }
 
   /// Schedules the samples up to the end of the run. Once, before it starts.
   void start();

@@ -29,6 +29,7 @@
 #include "net/channel.hpp"
 #include "net/packet.hpp"
 #include "net/radio_options.hpp"
+#include "net/radio_port.hpp"
 #include "net/receptions.hpp"
 #include "net/send_queue.hpp"
 #include "net/topology.hpp"
@@ -38,24 +39,7 @@
 
 namespace hearsay {
 
-/// Gets packets; called in Phase::update, with failures charged to the hearer. It may send, also
-/// the very bytes that it got.
-class Receiver {
- public:
-  virtual ~Receiver() = default;
-  virtual void on_packet(const Packet& packet) = 0;
-  /// What became of a packet of its own that was to be acknowledged: whether it was, before the
-  /// attempts ran out. (It may have arrived all the same.)
-  virtual void on_outcome(const Packet& packet, bool acknowledged) {
-    static_cast<void>(packet);
-    static_cast<void>(acknowledged);
-  }
-  /// The last packet that waited in its transmitter's queue has left it: is being sent, or has
-  /// expired. Called for who asked, Radio::tell_of_empty_queue(). It may send.
-  virtual void on_queue_empty() {}
-};
-
-class Radio final : private AccessUser {
+class Radio final : public RadioPort, private AccessUser {
  public:
   /// `simulation` must outlive the radio.
   /// @throws InputError for an option outside its range, or that does not fit the topology.
@@ -72,34 +56,30 @@ class Radio final : private AccessUser {
   /// `receiver` must outlive the radio.
   void attach(AgentId agent, Receiver& receiver);
 
-  /// Hands a packet to `sender`'s transmitter. Sending takes the time of its bytes and a header a
+  /// Sending takes the time of its bytes and a header a
   /// frame at `rate_bps`, to the nearest nanosecond. An addressee that does not hear the sender
   /// makes the packet out_of_range once it is sent.
-  /// @return false if the packet was dropped: the queue was full, or the agent is down.
   /// @throws BrokenInvariant for a sender or addressee outside 0 … n−1, a tick of 2^48 or more,
   /// 4 GiB or more of bytes, more than frames_max frames, or a broadcast to be acknowledged.
   /// @throws InputError for a packet that an empty queue has no room for, or of which a frame takes
   /// longer than the slot that it must fit into (slotted ALOHA, TDMA).
-  bool send(AgentId sender, const Outgoing& packet);
+  bool send(AgentId sender, const Outgoing& packet) override;
 
-  /// From now on the agent's receiver is told when its queue is empty, Receiver::on_queue_empty().
-  void tell_of_empty_queue(AgentId agent) { stations_[index(agent, "agent")].tells = true; }
-  /// Packets in the agent's queue, without the one that is being sent.
-  std::size_t waiting(AgentId agent) const {
+  void tell_of_empty_queue(AgentId agent) override {
+    stations_[index(agent, "agent")].tells = true;
+  }
+  std::size_t waiting(AgentId agent) const override {
     return stations_[index(agent, "agent")].waiting.size();
   }
 
   /// The agent fails, or is back. While it is down it hears nothing; its packets that wait or are
   /// on the air are lost (sender_down), and so is what was on its way to it (receiver_down).
   void set_up(AgentId agent, bool up);
-  bool up(AgentId agent) const { return stations_[index(agent, "agent")].up; }
+  bool up(AgentId agent) const override { return stations_[index(agent, "agent")].up; }
 
-  /// Whom a broadcast of `agent` may reach now, by number. Valid until the next call.
-  std::span<const AgentId> neighbours(AgentId agent) { return channel_.neighbours(agent); }
-  /// True if they may change over time.
-  bool neighbours_change() const { return channel_.neighbours_change(); }
-  /// Where `agent` is now. @throws BrokenInvariant if nobody knows.
-  Point position(AgentId agent) const { return channel_.position(agent); }
+  std::span<const AgentId> neighbours(AgentId agent) override { return channel_.neighbours(agent); }
+  bool neighbours_change() const override { return channel_.neighbours_change(); }
+  Point position(AgentId agent) const override { return channel_.position(agent); }
   const Topology& topology() const { return channel_.topology(); }
   /// Sums of `sender`, 0 … n−1. @throws BrokenInvariant for another.
   const SenderCounts& counts(AgentId sender) const {

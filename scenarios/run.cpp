@@ -12,6 +12,7 @@
 #include "scenarios/network.hpp"
 #include "scenarios/radio_record.hpp"
 #include "scenarios/sensors.hpp"
+#include "scenarios/talk.hpp"
 #include "scenarios/targets.hpp"
 #include "scenarios/trackers.hpp"
 #include "scenarios/traffic.hpp"
@@ -47,11 +48,6 @@ std::optional<Agreement::Options> agreement_of(const RecordSpec& record) {
   return Agreement::Options{.from = Time::at(Duration::seconds(spec.from_s)),
                             .within_m = spec.within_m.value(),
                             .period = Duration::seconds(spec.period_s)};
-}
-
-TalkPhase talk_phase_of(const std::string& name) {
-  if (name == "staggered") return TalkPhase::staggered;
-  return name == "together" ? TalkPhase::together : TalkPhase::random;
 }
 
 }  // namespace
@@ -204,6 +200,7 @@ void Run::build_agents(const Catalog& catalog) {
         Context::Service{.acknowledged = spec.talk.service == "acknowledged",
                          .gossip = gossips_.back().get(),
                          .steers = steers ? movement_.get() : nullptr}));
+    lookouts_.emplace_back();
     agents_.push_back(make_agent(id, catalog));
     if (gossips_.back()) {
       gossips_.back()->attach(*agents_.back());
@@ -233,37 +230,18 @@ std::unique_ptr<Agent> Run::make_agent(AgentId id, const Catalog& catalog) {
 }
 
 std::unique_ptr<Agent> Run::make_estimator(AgentId id) {
-  const Scenario& scenario = prepared_->scenario;
-  const auto i = static_cast<std::size_t>(id);
-  const AgentSpec& spec = *prepared_->specs[i];
-  EstimatorAgent::Options options;
-  set_rule(spec, prepared_->scenario, options);
-  options.subjects = static_cast<int>(prepared_->subjects.size());
-  options.motion = prepared_->motion;
-  if (spec.estimator.kind == "trajectory-gaussian") {
-    options.window = window_steps_of(spec.estimator, scenario.world);
-  }
-  options.dimension = options.motion ? static_cast<int>(options.motion->step.A.rows())
-                                     : static_cast<int>(subjects_.front().truth.size());
-  options.sensors = prepared_->sensors[i];
-  options.moves = spec.motion.has_value();
-  options.range_max_m = spec.sensor.range_max_m;
-  options.targets = subjects_;
-  options.sensor_period = Duration::seconds(spec.sensor.period_s);
-  options.sensor_start = Time::at(Duration::seconds(spec.sensor.start_s));
-  if (spec.sensor.end_s) options.sensor_end = Time::at(Duration::seconds(*spec.sensor.end_s));
-  options.observations = prepared_->observations[i];
-  // Who never talks has ticks at which it takes in what it holds.
-  const bool holds = gaussian::info(options.rule).memory == gaussian::Memory::held;
-  if (!options.listens_only || holds) options.talk = talk_of(id);
-  return std::make_unique<EstimatorAgent>(*contexts_[i], *witness_, std::move(options));
+  Context& context = *contexts_[static_cast<std::size_t>(id)];
+  auto agent = std::make_unique<EstimatorAgent>(
+      context, *witness_, estimator_options(*prepared_, id, simulation_.seed()));
+  lookouts_.back() = make_lookout(*prepared_, id, context, *witness_, *agent, subjects_);
+  return agent;
 }
 
 std::unique_ptr<Agent> Run::make_tracker(AgentId id) {
   const auto i = static_cast<std::size_t>(id);
   const AgentSpec& spec = *prepared_->specs[i];
   TrackerAgent::Options options = tracker_options(spec, targets_);
-  if (spec.talk.policy == "periodic") options.talk = talk_of(id);
+  if (spec.talk.policy == "periodic") options.talk = talk_of(*prepared_, id, simulation_.seed());
   auto agent = std::make_unique<TrackerAgent>(*contexts_[i], std::move(options));
   track_witness_->watch(id, agent->tracker());
   return agent;
@@ -274,14 +252,14 @@ std::unique_ptr<Agent> Run::make_localizer(AgentId id) {
   const AgentSpec& spec = *prepared_->specs[i];
   LocalizerAgent::Options options =
       localizer_options(spec, prepared_->journeys[i], prepared_->landmarks);
-  if (spec.talk.policy == "periodic") options.talk = talk_of(id);
+  if (spec.talk.policy == "periodic") options.talk = talk_of(*prepared_, id, simulation_.seed());
   return std::make_unique<LocalizerAgent>(*contexts_[i], *pose_witness_, std::move(options));
 }
 
 std::unique_ptr<Agent> Run::make_explorer(AgentId id) {
   const AgentSpec& spec = *prepared_->specs[static_cast<std::size_t>(id)];
   ExplorerAgent::Options options = explorer_options(spec, prepared_->scenario.world);
-  if (spec.talk.policy == "periodic") options.talk = talk_of(id);
+  if (spec.talk.policy == "periodic") options.talk = talk_of(*prepared_, id, simulation_.seed());
   auto agent = std::make_unique<ExplorerAgent>(*contexts_[static_cast<std::size_t>(id)],
                                                *grid_witness_, options);
   grid_witness_->watch(id, agent->estimator());
@@ -293,18 +271,8 @@ std::unique_ptr<Agent> Run::make_forager(AgentId id) {
   const AgentSpec& spec = *prepared_->specs[i];
   ForagerAgent::Options options =
       forager_options(spec, prepared_->scenario, id, robots_[i], simulation_.seed());
-  if (spec.talk.policy == "periodic") options.talk = talk_of(id);
+  if (spec.talk.policy == "periodic") options.talk = talk_of(*prepared_, id, simulation_.seed());
   return std::make_unique<ForagerAgent>(*contexts_[i], *robot_world_, *trail_witness_, options);
-}
-
-PeriodicTalk Run::talk_of(AgentId id) const {
-  const TalkSpec& talk = prepared_->specs[static_cast<std::size_t>(id)]->talk;
-  const Duration period = Duration::seconds(talk.period_s);
-  const Duration phase =
-      talk.phase_s ? Duration::seconds(*talk.phase_s)
-                   : talk_phase(talk_phase_of(talk.phase), period, id,
-                                static_cast<int>(prepared_->specs.size()), simulation_.seed());
-  return PeriodicTalk{.period = period, .phase = phase};
 }
 
 RunEnd Run::run() {
@@ -319,6 +287,7 @@ RunEnd Run::run() {
     for (std::size_t i = 0; i < agents_.size(); ++i) {
       simulation_.acting_for(static_cast<AgentId>(i));
       if (gossips_[i]) gossips_[i]->start();
+      if (lookouts_[i]) lookouts_[i]->start();
       agents_[i]->start();
     }
   } catch (...) {
@@ -353,7 +322,10 @@ void Run::keep_record_only() {
 }
 
 void Run::leave_final_values() {
-  for (const auto& agent : agents_) agent->finish();
+  for (std::size_t i = 0; i < agents_.size(); ++i) {
+    agents_[i]->finish();
+    if (lookouts_[i]) lookouts_[i]->finish();
+  }
   if (witness_) witness_->finish();
   if (track_witness_) track_witness_->finish();
   if (pose_witness_) pose_witness_->finish();

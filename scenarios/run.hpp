@@ -15,6 +15,7 @@
 #include "agents/forager_agent.hpp"
 #include "agents/grids/grid_witness.hpp"
 #include "agents/localizer_agent.hpp"
+#include "agents/lookout.hpp"
 #include "agents/pose_witness.hpp"
 #include "agents/source_agent.hpp"
 #include "agents/target_truth.hpp"
@@ -88,7 +89,6 @@ class Run {
   std::unique_ptr<Agent> make_forager(AgentId id);
   /// Where agents begin in this run; robots are on the floor.
   AgentPlaces places_of_run() const;
-  PeriodicTalk talk_of(AgentId id) const;
   void leave_final_values();
 
   // The order matters: what is below is destroyed first and may use what is above.
@@ -110,6 +110,7 @@ class Run {
   std::vector<std::unique_ptr<Gossip>> gossips_;  // by agent; null: it talks over the radio alone
   std::vector<std::unique_ptr<Context>> contexts_;
   std::vector<std::unique_ptr<Agent>> agents_;
+  std::vector<std::unique_ptr<Lookout>> lookouts_;  // by agent; null for those who look themselves
   std::unique_ptr<Life> life_;
 };
 

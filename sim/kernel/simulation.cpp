@@ -76,6 +76,18 @@ void Simulation::fail(AgentId agent, std::exception_ptr error) {
   end_.message = who(agent) + " failed at " + to_seconds(now_) + " s: " + what_of(error);
 }
 
+inline void Simulation::happen_next() {
+  EventQueue::Event event = queue_.pop();
+  begin_event(event.time, event.phase);
+  happening_ = true;
+  try {
+    event.callback();
+  } catch (...) {
+    fail(acting_, std::current_exception());
+  }
+  happening_ = false;
+}
+
 RunEnd Simulation::run() {
   require(!started_, "a simulation was run twice");
   started_ = true;
@@ -94,16 +106,26 @@ RunEnd Simulation::run() {
       end_.reason = EndReason::event_budget;
       break;
     }
-    EventQueue::Event event = queue_.pop();
-    begin_event(event.time, event.phase);
-    happening_ = true;
-    try {
-      event.callback();
-    } catch (...) {
-      fail(acting_, std::current_exception());
-    }
-    happening_ = false;
+    happen_next();
   }
+  return end_now(end_.reason);
+}
+
+void Simulation::advance(Time time) {
+  require(time >= now_, "the clock was to go back");
+  require(time <= next_time() && time <= options_.end, "the clock was to pass what is due");
+  now_ = time;
+  observing_ = false;
+  acting_ = no_agent;
+}
+
+void Simulation::happen() {
+  require(next_time() <= options_.end, "nothing is due up to the end of the run");
+  happen_next();
+}
+
+RunEnd Simulation::end_now(EndReason reason) {
+  if (!failed_) end_.reason = reason;
   observing_ = false;
   acting_ = no_agent;
   end_.at = now_;

@@ -47,6 +47,14 @@ struct RunEnd {
   bool ok() const { return reason == EndReason::time_reached || reason == EndReason::nothing_left; }
 };
 
+/// Is told of every event that is scheduled or taken back: for who keeps the same queue elsewhere.
+class ScheduleWatch {
+ public:
+  virtual ~ScheduleWatch() = default;
+  virtual void scheduled(EventId id, Time time, Phase phase) = 0;
+  virtual void cancelled(EventId id) = 0;
+};
+
 class Simulation {
  public:
   struct Options {
@@ -74,9 +82,17 @@ class Simulation {
     require(time >= now_, "an event was scheduled in the past");
     require(!observing_ || time > now_, "a callback that takes samples scheduled an event at once");
     quiet_until_ = std::min(quiet_until_, time);
-    return queue_.push(time, phase, std::forward<Function>(callback));
+    const EventId id = queue_.push(time, phase, std::forward<Function>(callback));
+    if (watch_) watch_->scheduled(id, time, phase);
+    return id;
   }
-  bool cancel(EventId id) { return queue_.cancel(id); }
+  bool cancel(EventId id) {
+    const bool was_pending = queue_.cancel(id);
+    if (was_pending && watch_) watch_->cancelled(id);
+    return was_pending;
+  }
+  /// From now on; nullptr: nobody. It outlives the simulation.
+  void set_watch(ScheduleWatch* watch) { watch_ = watch; }
 
   /// For an event with several instants, such as a packet on its way from hearer to hearer. The
   /// event that is happening goes on at `time` without a way through the queue, if nothing else is
@@ -121,6 +137,21 @@ class Simulation {
   /// the clock stands at end(), otherwise at the last event.
   RunEnd run();
 
+  // In place of run(), for who drives the run step by step: by another clock, or by orders from
+  // elsewhere.
+
+  /// When the next event is due; Time::never() if none is pending.
+  Time next_time() { return queue_.empty() ? Time::never() : queue_.next_time(); }
+  /// Moves the clock on to `time`. @throws BrokenInvariant if that is before now(), or beyond the
+  /// next event or the end of the run.
+  void advance(Time time);
+  /// The next event happens, whatever the budget. One must be pending, not beyond the end. A
+  /// failure ends the run as in run().
+  void happen();
+  bool failed() const { return failed_; }
+  /// How far it came, or why it failed; what run() would return if it ended here.
+  RunEnd end_now(EndReason reason);
+
  private:
   std::string who(AgentId agent) const;
   void begin_event(Time time, Phase phase) {
@@ -130,11 +161,13 @@ class Simulation {
     ++end_.events;
   }
   bool quiet_at(Time time);
+  void happen_next();
 
   Options options_;
   Time now_;
   EventQueue queue_;
   Record record_;
+  ScheduleWatch* watch_ = nullptr;
   AgentId acting_ = no_agent;
   bool started_ = false;
   bool happening_ = false;  // an event is

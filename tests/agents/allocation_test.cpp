@@ -7,6 +7,7 @@
 
 #include "agents/estimator_agent.hpp"
 #include "agents/localizer_agent.hpp"
+#include "agents/lookout.hpp"
 #include "sim/math/functions.hpp"
 #include "tools/memory/memory.hpp"
 
@@ -25,21 +26,27 @@ std::size_t allocations_of(gaussian::Rule rule, bool ledger, bool measures) {
   Radio radio(simulation, Topology::full(5), {.latency = 10_ms, .loss = Loss::bernoulli(0.2)});
   std::vector<std::unique_ptr<Context>> contexts;
   std::vector<std::unique_ptr<EstimatorAgent>> agents;
+  std::vector<std::unique_ptr<Lookout>> lookouts;
   for (AgentId id = 0; id < 5; ++id) {
     contexts.push_back(std::make_unique<Context>(
         simulation, radio,
         Context::Identity{.id = id, .name = "agent", .kind = "estimator", .parameters = {}}));
     EstimatorAgent::Options options;
     options.rule = rule;
-    options.sensors = {PositionSensor(
-        {.sensor_m = {10.0 + id, 5.0}, .sigma_along_m = 3.0 + id, .sigma_across_m = 1.0})};
-    if (!measures) options.sensor_end = Time::at(50_s);
     options.talk = PeriodicTalk{.period = 1_s, .phase = 100_ms * id};
     agents.push_back(std::make_unique<EstimatorAgent>(*contexts.back(), witness, options));
+    Lookout::Options looks;
+    looks.sensors = {PositionSensor(
+        {.sensor_m = {10.0 + id, 5.0}, .sigma_along_m = 3.0 + id, .sigma_across_m = 1.0})};
+    if (!measures) looks.end = Time::at(50_s);
+    lookouts.push_back(std::make_unique<Lookout>(*contexts.back(), witness, *agents.back(), looks));
     radio.attach(id, *agents.back());
   }
   witness.start();
-  for (const auto& agent : agents) agent->start();
+  for (AgentId id = 0; id < 5; ++id) {
+    lookouts[static_cast<std::size_t>(id)]->start();
+    agents[static_cast<std::size_t>(id)]->start();
+  }
   std::size_t before = 0, after = 0;
   simulation.schedule(Time::at(60_s), Phase::observe, [&] { before = allocations(); });
   simulation.schedule(Time::at(119_s), Phase::observe, [&] { after = allocations(); });

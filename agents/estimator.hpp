@@ -69,13 +69,20 @@ struct EstimatorCounts {
 };
 
 /// It knows no clock and no radio: measurements and messages in, beliefs and messages out.
-class Estimator {
+/// What a witness asks of whoever believes, here or in another process.
+class Believer {
  public:
-  virtual ~Estimator() = default;
+  virtual ~Believer() = default;
 
   /// From here on it is stamp `now`, not before the last one. Nothing where states stand still.
   virtual void advance(std::int64_t now) = 0;
+  /// What it believes about a subject now; valid until anything else is called.
+  virtual const TrackedBelief& tracked(int subject) const = 0;
+  virtual const EstimatorCounts& counts() const = 0;
+};
 
+class Estimator : public Believer {
+ public:
   /// Uses a measurement's information about the state as it is now (eq. 3.34–3.35). `measurement`
   /// is its index in the subject's MeasurementBook.
   virtual void measured(int subject, const gaussian::Belief& information,
@@ -114,10 +121,6 @@ class Estimator {
     static_cast<void>(subject);
     return nullptr;
   }
-
-  /// What it believes about a subject now; valid until anything else is called.
-  virtual const TrackedBelief& tracked(int subject) const = 0;
-  virtual const EstimatorCounts& counts() const = 0;
 };
 
 }  // namespace hearsay

@@ -148,7 +148,7 @@ void EstimatorAgent::finish() {
 }
 
 Process EstimatorAgent::talk() {
-  for (std::uint64_t tick = 0;;) {
+  for (std::uint64_t tick = options_.talk->next_tick(context().now());;) {
     const Time when = options_.talk->tick(tick);
     co_await context().sleep_until(when);
     tick += speak_or_not(tick);

@@ -12,7 +12,7 @@ class EstimatorWitness {
   virtual ~EstimatorWitness() = default;
 
   /// From now on `agent`'s beliefs are sampled. Agents in ascending number.
-  virtual void watch(AgentId agent, Estimator& estimator) = 0;
+  virtual void watch(AgentId agent, Believer& believer) = 0;
   /// Distance from the mean of a belief about a subject to the truth now, m; NaN without a mean.
   /// For what an agent leaves in the record.
   virtual double distance_error_m(int subject, const gaussian::Belief& belief) = 0;

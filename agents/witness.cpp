@@ -73,8 +73,8 @@ std::size_t Witness::measured(int subject, const gaussian::Belief& information) 
   return index;
 }
 
-void Witness::watch(AgentId agent, Estimator& estimator) {
-  watched_.push_back({.agent = agent, .estimator = &estimator});
+void Witness::watch(AgentId agent, Believer& believer) {
+  watched_.push_back({.agent = agent, .believer = &believer});
 }
 
 void Witness::advance() {
@@ -110,12 +110,12 @@ void Witness::schedule_agreement(Time at) {
 
 void Witness::gather_spreads() {
   advance();
-  for (const Watched& watched : watched_) watched.estimator->advance(stamp_);
+  for (const Watched& watched : watched_) watched.believer->advance(stamp_);
   for (std::size_t s = 0; s < spreads_.size(); ++s) {
     spreads_[s].clear();
     for (const Watched& watched : watched_) {
       if (!up(watched.agent)) continue;
-      auto estimate = gaussian::state(watched.estimator->tracked(static_cast<int>(s)).belief);
+      auto estimate = gaussian::state(watched.believer->tracked(static_cast<int>(s)).belief);
       if (estimate) estimate->conservativeResize(axes_);
       spreads_[s].add(estimate);
     }
@@ -154,13 +154,13 @@ void Witness::sample() {
     keep_distance(central_distances_m_, values);
   }
   for (Watched& watched : watched_) {
-    watched.estimator->advance(stamp_);
+    watched.believer->advance(stamp_);
     for (int s = 0; s < subjects; ++s) sample(watched, s);
   }
 }
 
 void Witness::sample(Watched& watched, int subject) {
-  const TrackedBelief& tracked = watched.estimator->tracked(subject);
+  const TrackedBelief& tracked = watched.believer->tracked(subject);
   const gaussian::Assessment assessment = gaussian::assess(tracked.belief);
   Values values = measure(tracked, assessment, subject, false);
   if (wants(Metric::disagreement_m)) {
@@ -311,7 +311,7 @@ void Witness::finish() {
     if (now >= agreement_->options().from && agreement_->last_sample() != now) sample_agreement();
     record.scalar(central_agent, record.name("agree_again_s"), agreement_->agree_again_s());
   }
-  Watched central{.agent = central_agent, .estimator = nullptr};
+  Watched central{.agent = central_agent, .believer = nullptr};
   central.distances_m.swap(central_distances_m_);
   finish(central);
   for (Watched& watched : watched_) finish(watched);
@@ -326,7 +326,7 @@ void Witness::finish(Watched& watched) {
   for (std::size_t s = 0; s < central_.size(); ++s) {
     const int subject = static_cast<int>(s);
     const gaussian::Belief& belief =
-        watched.estimator ? watched.estimator->tracked(subject).belief : central_[s].belief;
+        watched.believer ? watched.believer->tracked(subject).belief : central_[s].belief;
     const gaussian::Assessment assessment = gaussian::assess(belief);
     const double sigma = claimed_sigma(belief, assessment);
     distance += distance_m(assessment.state, subject);
@@ -336,13 +336,13 @@ void Witness::finish(Watched& watched) {
   scalar("distance_error_m", distance / subjects);
   scalar("final_claimed_sigma_m", std::sqrt(variance / subjects));
   if (options_.motion) scalar("position_error_median_m", median(watched.distances_m));
-  if (!watched.estimator) return;
+  if (!watched.believer) return;
   scalar("not_positive_share",
          static_cast<double>(watched.not_positive) / static_cast<double>(watched.samples));
   if (options_.ledger && !options_.motion) {
     scalar("reach_gap_max", watched.reach_gap_max, Origin::ledger);
   }
-  const EstimatorCounts& counts = watched.estimator->counts();
+  const EstimatorCounts& counts = watched.believer->counts();
   scalar("measurements", static_cast<double>(counts.measurements));
   scalar("fusions", static_cast<double>(counts.fusions));
   scalar("fusions_skipped", static_cast<double>(counts.skipped));

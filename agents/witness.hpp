@@ -48,7 +48,7 @@ class Witness final : public EstimatorWitness {
   std::size_t measured(int subject, const gaussian::Belief& information);
 
   double distance_error_m(int subject, const gaussian::Belief& belief) override;
-  void watch(AgentId agent, Estimator& estimator) override;
+  void watch(AgentId agent, Believer& believer) override;
   LedgerPool* ledgers() override { return options_.ledger ? &pool_ : nullptr; }
   /// Shared by all of the run.
   EstimatorWorkspace& workspace() override { return workspace_; }
@@ -61,7 +61,7 @@ class Witness final : public EstimatorWitness {
  private:
   struct Watched {
     AgentId agent;
-    Estimator* estimator;
+    Believer* believer;
     double reach_gap_max = 0.0;
     std::vector<double> distances_m = {};  // of moving subjects: errors at all samples
     std::uint64_t samples = 0;

@@ -36,12 +36,6 @@ Content content_of(const AgentSpec& agent, gaussian::Rule rule) {
   return speaks ? content_of(agent.talk.content) : Content::belief;
 }
 
-/// n of what they estimate.
-int dimension_of(const PreparedScenario& prepared) {
-  return prepared.motion ? static_cast<int>(prepared.motion->step.A.rows())
-                         : static_cast<int>(prepared.subjects.front().truth.size());
-}
-
 /// Fills in how the agent fuses and what it says: rule, content, policy.
 void set_rule(const AgentSpec& agent, const Scenario& scenario, EstimatorAgent::Options& options) {
   const EstimatorSpec& estimator = agent.estimator;
@@ -61,6 +55,11 @@ void set_rule(const AgentSpec& agent, const Scenario& scenario, EstimatorAgent::
 gaussian::MessageForm message_form_of(const AgentSpec& agent) {
   const gaussian::Rule rule = gaussian::rule_by_name(agent.estimator.fusion).value();
   return message_form(rule, content_of(agent, rule));
+}
+
+int dimension_of(const PreparedScenario& prepared) {
+  return prepared.motion ? static_cast<int>(prepared.motion->step.A.rows())
+                         : static_cast<int>(prepared.subjects.front().truth.size());
 }
 
 EstimatorAgent::Options estimator_options(const PreparedScenario& prepared, AgentId id,

@@ -16,6 +16,9 @@ struct PreparedScenario;
 /// How the agent's messages are encoded; its rule and content go together.
 gaussian::MessageForm message_form_of(const AgentSpec& agent);
 
+/// n of what is estimated; there is something.
+int dimension_of(const PreparedScenario& prepared);
+
 /// Of an agent of kind "estimator", in the run of this seed.
 EstimatorAgent::Options estimator_options(const PreparedScenario& prepared, AgentId id,
                                           std::uint64_t seed);

@@ -60,6 +60,20 @@ KnownNames known_names(const Catalog& catalog) {
   return names;
 }
 
+void require_can_live_elsewhere(const PreparedScenario& prepared, const Catalog& catalog) {
+  for (std::size_t i = 0; i < prepared.specs.size(); ++i) {
+    const AgentSpec& spec = *prepared.specs[i];
+    const bool own = catalog.agents().contains(spec.kind);
+    const bool steered = spec.motion && spec.motion->kind == "steered";
+    if ((own || spec.kind == "estimator" || spec.kind == "source") && !steered) continue;
+    throw InputError(prepared.scenario.file, 0,
+                     "agent '" + prepared.names[i] + "' of kind '" + spec.kind + "'" +
+                         (steered ? ", which is steered," : "") +
+                         " cannot live in a process of its own; agents of kind 'estimator', "
+                         "'source' and of your own kinds can, where they are not steered");
+  }
+}
+
 std::shared_ptr<const PreparedScenario> prepare(Scenario scenario, const Catalog&, LogCache& logs) {
   auto prepared = std::make_shared<PreparedScenario>();
   prepared->scenario = std::move(scenario);
@@ -92,6 +106,7 @@ std::shared_ptr<const PreparedScenario> prepare(Scenario scenario, const Catalog
 Run::Run(std::shared_ptr<const PreparedScenario> prepared, const Catalog& catalog,
          const Options& options)
     : prepared_(std::move(prepared)),
+      elsewhere_(options.elsewhere),
       simulation_({.seed = options.seed,
                    .end = prepared_->end,
                    .events_max = prepared_->scenario.events_max,
@@ -217,6 +232,7 @@ void Run::build_agents(const Catalog& catalog) {
 std::unique_ptr<Agent> Run::make_agent(AgentId id, const Catalog& catalog) {
   const auto i = static_cast<std::size_t>(id);
   const AgentSpec& spec = *prepared_->specs[i];
+  if (elsewhere_) return make_stand_in(id);
   const auto own = catalog.agents().find(spec.kind);
   if (own != catalog.agents().end()) return own->second.make(*contexts_[i]);
   if (spec.kind == "estimator") return make_estimator(id);
@@ -234,6 +250,17 @@ std::unique_ptr<Agent> Run::make_estimator(AgentId id) {
   auto agent = std::make_unique<EstimatorAgent>(
       context, *witness_, estimator_options(*prepared_, id, simulation_.seed()));
   lookouts_.back() = make_lookout(*prepared_, id, context, *witness_, *agent, subjects_);
+  return agent;
+}
+
+std::unique_ptr<Agent> Run::make_stand_in(AgentId id) {
+  const bool estimates = prepared_->specs[static_cast<std::size_t>(id)]->kind == "estimator";
+  Context& context = *contexts_[static_cast<std::size_t>(id)];
+  auto agent = elsewhere_(context, estimates ? witness_.get() : nullptr);
+  if (estimates) {
+    witness_->watch(id, agent->believer());
+    lookouts_.back() = make_lookout(*prepared_, id, context, *witness_, *agent, subjects_);
+  }
   return agent;
 }
 
@@ -276,6 +303,11 @@ std::unique_ptr<Agent> Run::make_forager(AgentId id) {
 }
 
 RunEnd Run::run() {
+  start();
+  return finish(simulation_.run());
+}
+
+void Run::start() {
   try {
     if (witness_) witness_->start();
     if (track_witness_) track_witness_->start();
@@ -293,7 +325,9 @@ RunEnd Run::run() {
   } catch (...) {
     simulation_.fail(no_agent, std::current_exception());
   }
-  RunEnd end = simulation_.run();
+}
+
+RunEnd Run::finish(RunEnd end) {
   if (end.ok()) {
     try {
       leave_final_values();
@@ -308,6 +342,7 @@ RunEnd Run::run() {
 
 void Run::keep_record_only() {
   life_.reset();
+  lookouts_.clear();
   agents_.clear();
   contexts_.clear();
   gossips_.clear();

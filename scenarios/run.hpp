@@ -6,6 +6,7 @@
 //   ... run.record() ...
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@
 #include "agents/localizer_agent.hpp"
 #include "agents/lookout.hpp"
 #include "agents/pose_witness.hpp"
+#include "agents/remote/stand_in.hpp"
 #include "agents/source_agent.hpp"
 #include "agents/target_truth.hpp"
 #include "agents/track_witness.hpp"
@@ -60,12 +62,20 @@ struct PreparedScenario {
 std::shared_ptr<const PreparedScenario> prepare(Scenario scenario, const Catalog& catalog,
                                                 LogCache& logs);
 
+/// Whether each agent can live in a process of its own: agents of kind "estimator" and of the
+/// user's own kinds can, unless they are steered. @throws InputError that says which cannot, and
+/// why.
+void require_can_live_elsewhere(const PreparedScenario& prepared, const Catalog& catalog);
+
 class Run {
  public:
   struct Options {
     std::uint64_t seed = 1;
     DigestSink* digest = nullptr;         ///< not owned
     DigestSink* ledger_digest = nullptr;  ///< not owned
+    /// Makes what stands in for agents that live in other processes: all of them. Empty: all live
+    /// here. See require_can_live_elsewhere().
+    std::function<std::unique_ptr<remote::StandIn>(Context&, EstimatorWitness*)> elsewhere = {};
   };
   /// `catalog` must outlive the run.
   Run(std::shared_ptr<const PreparedScenario> prepared, const Catalog& catalog,
@@ -75,6 +85,16 @@ class Run {
   /// Once. A run that failed has a record, too: up to the failure.
   RunEnd run();
   const Record& record() const { return simulation_.record(); }
+  // In place of run(), for who drives the simulation step by step:
+  void start();
+  Simulation& simulation() { return simulation_; }
+  /// Leaves final values and closes the record. @return how it ended: also this may fail.
+  RunEnd finish(RunEnd end);
+  /// All agents, by number.
+  Agent& agent(AgentId id) { return *agents_[static_cast<std::size_t>(id)]; }
+  /// The agent's process is gone, or there is another: its radio is off, or on.
+  void set_reachable(AgentId id, bool reachable) { radio_->set_up(id, reachable); }
+
   /// After run(): gives up agents, radio and witness, where they were made; the record stays.
   void keep_record_only();
 
@@ -83,6 +103,7 @@ class Run {
   void build_agents(const Catalog& catalog);
   std::unique_ptr<Agent> make_agent(AgentId id, const Catalog& catalog);
   std::unique_ptr<Agent> make_estimator(AgentId id);
+  std::unique_ptr<Agent> make_stand_in(AgentId id);
   std::unique_ptr<Agent> make_tracker(AgentId id);
   std::unique_ptr<Agent> make_localizer(AgentId id);
   std::unique_ptr<Agent> make_explorer(AgentId id);
@@ -93,6 +114,7 @@ class Run {
 
   // The order matters: what is below is destroyed first and may use what is above.
   std::shared_ptr<const PreparedScenario> prepared_;
+  std::function<std::unique_ptr<remote::StandIn>(Context&, EstimatorWitness*)> elsewhere_;
   Simulation simulation_;
   std::vector<Subject> subjects_;                // with the truth of this run
   std::vector<TargetTruth> targets_;             // of this run, for trackers

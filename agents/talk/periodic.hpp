@@ -24,6 +24,12 @@ struct PeriodicTalk {
   Time tick(std::uint64_t k) const {
     return Time::at(phase + period * static_cast<std::int64_t>(k));
   }
+  /// The first tick that is not before `now`.
+  std::uint64_t next_tick(Time now) const {
+    const std::int64_t since = now.nanoseconds() - phase.nanoseconds();
+    if (since <= 0) return 0;
+    return static_cast<std::uint64_t>((since + period.nanoseconds() - 1) / period.nanoseconds());
+  }
 };
 
 /// The phase of agent `agent` of `agents`.

@@ -178,6 +178,40 @@ Matrix MeasurementBook::weighted_square(std::span<const double> weights, double 
   return unpacked(sums, dimension_);
 }
 
+Ledger::Parts Ledger::parts() const {
+  return {.weights = weights_,
+          .matrices = matrices_,
+          .drift = drift_,
+          .reach = reach_,
+          .dimension = dimension_,
+          .moves = moves_,
+          .exact = exact_};
+}
+
+Ledger Ledger::from(Parts parts) {
+  const int n = parts.dimension;
+  require(n >= 0 && n <= gaussian::dimension_max && (n > 0 || !parts.moves),
+          "a ledger of another dimension");
+  const std::size_t square = static_cast<std::size_t>(n) * static_cast<std::size_t>(n);
+  const auto whole = [&](const std::vector<double>& numbers) {
+    return square == 0 ? numbers.empty() : numbers.size() % square == 0;
+  };
+  require(whole(parts.matrices) && whole(parts.drift), "a ledger with half a matrix");
+  require(parts.matrices.size() <= square * parts.weights.size(),
+          "a ledger with more matrices than weights");
+  require(parts.reach.size() == parts.weights.size(),
+          "a ledger with more or less reach than weights");
+  Ledger ledger;
+  ledger.weights_ = std::move(parts.weights);
+  ledger.matrices_ = std::move(parts.matrices);
+  ledger.drift_ = std::move(parts.drift);
+  ledger.reach_ = std::move(parts.reach);
+  ledger.dimension_ = n;
+  ledger.moves_ = parts.moves;
+  ledger.exact_ = parts.exact;
+  return ledger;
+}
+
 Ledger& Ledger::operator=(const Ledger& other) {
   if (this != &other) {
     copy_with_room(other.weights_, weights_);

@@ -100,6 +100,17 @@ class Ledger {
   bool exact() const { return exact_; }
   void clear();
 
+  /// All of it, to be carried to another process.
+  struct Parts {
+    std::vector<double> weights, matrices, drift;
+    std::vector<std::uint8_t> reach;
+    int dimension = 0;
+    bool moves = false, exact = true;
+  };
+  Parts parts() const;
+  /// @throws BrokenInvariant if lengths disagree.
+  static Ledger from(Parts parts);
+
   std::span<const double> weights() const { return weights_; }
   /// W_k by columns, n² numbers for each measurement; empty as long as W_k = w_k·I for all.
   std::span<const double> matrices() const { return matrices_; }

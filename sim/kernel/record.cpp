@@ -38,6 +38,7 @@ void Record::agent(AgentId agent, std::string_view name, std::string_view kind) 
 
 void Record::scalar(AgentId agent, NameId name, double value, Origin origin) {
   require_open();
+  if (options_.tap) return options_.tap->on_scalar({agent, name, value}, origin);
   canon(origin).row('C', agent, hash(name), value);
   scalars_.push_back({agent, name, value});
 }
@@ -45,6 +46,7 @@ void Record::scalar(AgentId agent, NameId name, double value, Origin origin) {
 void Record::series(Time time, AgentId agent, NameId subject, NameId name, double value,
                     Origin origin) {
   require_open();
+  if (options_.tap) return options_.tap->on_series({time, agent, subject, name, value}, origin);
   canon(origin).row('S', time, agent, hash(subject), hash(name), value);
   series_.push_back({time, agent, subject, name, value});
 }
@@ -59,6 +61,7 @@ void Record::link(const LinkRow& row) {
 
 void Record::event(Time time, AgentId agent, std::string_view kind, std::string_view detail) {
   require_open();
+  if (options_.tap) return options_.tap->on_event(time, agent, kind, detail);
   run_canon_.row('E', time, agent, fnv1a(kind));
   run_canon_.text(detail);
   if (events_.size() < options_.events_max) {

@@ -71,6 +71,16 @@ enum class Origin : std::uint8_t {
   ledger,  ///< what the out-of-band ledger says about it
 };
 
+/// Gets rows in place of a record that is kept elsewhere.
+class RecordTap {
+ public:
+  virtual ~RecordTap() = default;
+  virtual void on_scalar(const ScalarRow& row, Origin origin) = 0;
+  virtual void on_series(const SeriesRow& row, Origin origin) = 0;
+  virtual void on_event(Time time, AgentId agent, std::string_view kind,
+                        std::string_view detail) = 0;
+};
+
 class Record {
  public:
   struct Options {
@@ -78,6 +88,7 @@ class Record {
     std::size_t events_max = 100'000;     ///< events kept; more are digested and counted only
     DigestSink* digest = nullptr;         ///< for Origin::run; not owned
     DigestSink* ledger_digest = nullptr;  ///< for Origin::ledger; not owned
+    RecordTap* tap = nullptr;  ///< gets scalars, series and events, which are not kept; not owned
   };
   explicit Record(const Options& options);
 

@@ -70,6 +70,7 @@ std::string Simulation::who(AgentId agent) const {
 void Simulation::fail(AgentId agent, std::exception_ptr error) {
   if (failed_) return;
   failed_ = true;
+  failure_ = error;
   quiet_until_ = Time();
   end_.reason = EndReason::agent_failed;
   end_.agent = agent;

@@ -149,6 +149,8 @@ class Simulation {
   /// failure ends the run as in run().
   void happen();
   bool failed() const { return failed_; }
+  /// What was thrown, if it failed.
+  std::exception_ptr failure() const { return failure_; }
   /// How far it came, or why it failed; what run() would return if it ended here.
   RunEnd end_now(EndReason reason);
 
@@ -175,6 +177,7 @@ class Simulation {
   Time quiet_until_;
   bool observing_ = false;
   bool failed_ = false;
+  std::exception_ptr failure_;
   RunEnd end_;
 };
 

@@ -1,0 +1,195 @@
+#include "agents/remote/remote_world.hpp"
+
+#include <exception>
+#include <utility>
+
+#include "sim/kernel/error.hpp"
+
+namespace hearsay::remote {
+namespace {
+
+std::string what_of(const std::exception_ptr& error) {
+  try {
+    std::rethrow_exception(error);
+  } catch (const std::exception& known) {
+    return known.what();
+  } catch (...) {
+    return "an exception that is not a std::exception";
+  }
+}
+
+}  // namespace
+
+RemoteWorld::RemoteWorld(Superior& superior, const Order& first, const Options& options)
+    : superior_(superior), options_(options), order_(first) {
+  require(first.kind == OrderKind::start, "the first order is another than to start");
+  workspace_.measured_at.resize(static_cast<std::size_t>(options.subjects));
+  look_around();
+}
+
+bool RemoteWorld::serve(const Parts& parts) {
+  parts_ = &parts;
+  for (;;) {
+    std::exception_ptr error;
+    try {
+      obey();
+    } catch (...) {
+      error = std::current_exception();
+    }
+    if (gone_) return false;
+    if (parts.simulation.failed()) error = parts.simulation.failure();
+    if (error) answer_.failure = what_of(error);
+    if (!answer(error ? AnswerKind::failed : AnswerKind::done)) return false;
+    if (order_.kind == OrderKind::dismiss) return true;
+  }
+}
+
+void RemoteWorld::look_around() {
+  if (order_.surroundings.neighbours) neighbours_ = *order_.surroundings.neighbours;
+  around_ = order_.surroundings;
+  for (std::size_t s = 0; s < order_.measured_at.size() && s < workspace_.measured_at.size(); ++s) {
+    workspace_.measured_at[s].insert(workspace_.measured_at[s].end(), order_.measured_at[s].begin(),
+                                     order_.measured_at[s].end());
+  }
+}
+
+void RemoteWorld::obey() {
+  const auto& [simulation, agent, receiver] = *parts_;
+  if (order_.kind == OrderKind::wake) {
+    require(simulation.next_time() == order_.now, "it is not the time of what was planned");
+    simulation.happen();
+    return;
+  }
+  simulation.advance(order_.now);
+  switch (order_.kind) {
+    case OrderKind::start:
+      return begin();
+    case OrderKind::measurement:
+      require(receiver, "a measurement for an agent without sensors");
+      return receiver->on_measurement(order_.measurement);
+    case OrderKind::packet:
+      return agent.on_packet(packet());
+    case OrderKind::outcome:
+      return agent.on_outcome(packet(), order_.yes);
+    case OrderKind::queue_empty:
+      return agent.on_queue_empty();
+    case OrderKind::down:
+      return agent.on_down();
+    case OrderKind::up:
+      return agent.on_up(order_.yes);
+    case OrderKind::report:
+      return report();
+    case OrderKind::finish:
+      return agent.finish();
+    case OrderKind::wake:
+    case OrderKind::go_on:
+    case OrderKind::dismiss:
+      break;
+  }
+  throw BrokenInvariant("an order at the wrong time");
+}
+
+// Whoever began before in this run has lost its memory, and others know it.
+void RemoteWorld::begin() {
+  parts_->agent.start();
+  for (std::uint32_t life = 0; life < order_.lives; ++life) parts_->agent.on_up(true);
+}
+
+Packet RemoteWorld::packet() {
+  rider_ = RiderPtr();
+  if (!order_.rider.empty() && options_.ledgers) {
+    LedgerRider* rider = nullptr;
+    rider_ = pool_.make(rider);
+    require(unpack(order_.rider, *rider), "a ledger is malformed");
+  }
+  return {.sender = order_.sender,
+          .receiver = order_.receiver,
+          .kind = parts_->simulation.record().name(order_.message_kind),
+          .bytes = order_.bytes,
+          .sent = order_.sent,
+          .rider = rider_.get()};
+}
+
+void RemoteWorld::report() {
+  if (!believer_) return;
+  believer_->advance(order_.stamp);
+  for (int s = 0; s < options_.subjects; ++s) answer_.beliefs.push_back(believer_->tracked(s));
+  answer_.counts = believer_->counts();
+}
+
+bool RemoteWorld::answer(AnswerKind kind) {
+  answer_.kind = kind;
+  const bool goes_on = superior_.exchange(answer_, order_);
+  answer_ = {};
+  if (goes_on) look_around();
+  gone_ = !goes_on;
+  return goes_on;
+}
+
+void RemoteWorld::call(AnswerKind kind) {
+  if (!answer(kind)) throw WorldGone();
+  require(order_.kind == OrderKind::go_on, "an order came while the agent waited for an answer");
+}
+
+bool RemoteWorld::send(AgentId, const Outgoing& packet) {
+  answer_.message_kind = parts_->simulation.record().text(packet.kind);
+  answer_.receiver = packet.receiver;
+  answer_.tick = packet.tick;
+  answer_.news_of = packet.subject;
+  answer_.acknowledged = packet.acknowledged;
+  answer_.bytes.assign(packet.bytes.begin(), packet.bytes.end());
+  if (packet.rider.get()) pack(static_cast<const LedgerRider&>(*packet.rider.get()), answer_.rider);
+  // What it hears is in order_, which the answer overwrites.
+  std::vector<std::byte> heard = std::move(order_.bytes);
+  call(AnswerKind::send);
+  order_.bytes = std::move(heard);
+  return order_.yes;
+}
+
+void RemoteWorld::tell_of_empty_queue(AgentId) { call(AnswerKind::tell_of_empty_queue); }
+
+Point RemoteWorld::position(AgentId) const {
+  require(around_.position_m.has_value(), "radio: nobody knows where agents stand");
+  return *around_.position_m;
+}
+
+double RemoteWorld::distance_error_m(int subject, const gaussian::Belief& belief) {
+  answer_.subject = subject;
+  answer_.belief = belief;
+  call(AnswerKind::distance);
+  return order_.value;
+}
+
+void RemoteWorld::on_scalar(const ScalarRow& row, Origin) {
+  require(parts_ != nullptr, "an agent recorded something before it began");
+  answer_.rows.push_back({.kind = Row::Kind::scalar,
+                          .name = parts_->simulation.record().text(row.name),
+                          .value = row.value});
+}
+
+void RemoteWorld::on_series(const SeriesRow& row, Origin) {
+  require(parts_ != nullptr, "an agent recorded something before it began");
+  const Record& record = parts_->simulation.record();
+  answer_.rows.push_back({.kind = Row::Kind::series,
+                          .time = row.time,
+                          .name = record.text(row.name),
+                          .text = record.text(row.subject),
+                          .value = row.value});
+}
+
+void RemoteWorld::on_event(Time time, AgentId, std::string_view kind, std::string_view detail) {
+  answer_.rows.push_back({.kind = Row::Kind::event,
+                          .time = time,
+                          .name = std::string(kind),
+                          .text = std::string(detail)});
+}
+
+void RemoteWorld::scheduled(EventId id, Time time, Phase phase) {
+  answer_.plans.push_back({.event = id.name, .time = time, .phase = phase});
+}
+
+void RemoteWorld::cancelled(EventId id) {
+  answer_.plans.push_back({.event = id.name, .cancelled = true});
+}
+
+}  // namespace hearsay::remote

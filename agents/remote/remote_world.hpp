@@ -1,0 +1,94 @@
+// The world as an agent sees it from another process, in lockstep: its radio, the witness and the
+// record are calls to the world; what it plans, the world keeps in mind.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "agents/agent.hpp"
+#include "agents/estimator_witness.hpp"
+#include "agents/measurement.hpp"
+#include "agents/remote/protocol.hpp"
+
+namespace hearsay::remote {
+
+/// Where orders come from.
+class Superior {
+ public:
+  virtual ~Superior() = default;
+  /// Gives the answer and waits for the next order. @return false if none will come: the world is
+  /// gone.
+  virtual bool exchange(const Answer& answer, Order& order) = 0;
+};
+
+class RemoteWorld final : public RadioPort,
+                          public EstimatorWitness,
+                          private RecordTap,
+                          private ScheduleWatch {
+ public:
+  struct Options {
+    bool ledgers = false;
+    int subjects = 0;  ///< that the agent estimates
+  };
+  /// `first`: the order to start. `superior` outlives this.
+  RemoteWorld(Superior& superior, const Order& first, const Options& options);
+
+  /// For the agent's simulation, of which this then is the record and the plan.
+  RecordTap& tap() { return *this; }
+  ScheduleWatch& plans() { return *this; }
+
+  struct Parts {
+    Simulation& simulation;
+    Agent& agent;
+    MeasurementReceiver* receiver = nullptr;  ///< null: it has no sensors
+  };
+  /// Obeys until it is dismissed. @return false if the world went away before.
+  bool serve(const Parts& parts);
+
+  bool send(AgentId sender, const Outgoing& packet) override;
+  void tell_of_empty_queue(AgentId agent) override;
+  std::size_t waiting(AgentId) const override { return around_.waiting; }
+  bool up(AgentId) const override { return around_.up; }
+  std::span<const AgentId> neighbours(AgentId) override { return neighbours_; }
+  bool neighbours_change() const override { return around_.hears_strangers; }
+  Point position(AgentId agent) const override;
+
+  void watch(AgentId, Believer& believer) override { believer_ = &believer; }
+  double distance_error_m(int subject, const gaussian::Belief& belief) override;
+  LedgerPool* ledgers() override { return options_.ledgers ? &pool_ : nullptr; }
+  EstimatorWorkspace& workspace() override { return workspace_; }
+
+ private:
+  /// Thrown through the agent's code when its world is gone.
+  struct WorldGone {};
+
+  void on_scalar(const ScalarRow& row, Origin origin) override;
+  void on_series(const SeriesRow& row, Origin origin) override;
+  void on_event(Time time, AgentId agent, std::string_view kind, std::string_view detail) override;
+  void scheduled(EventId id, Time time, Phase phase) override;
+  void cancelled(EventId id) override;
+
+  void look_around();
+  void obey();
+  void begin();
+  Packet packet();
+  void report();
+  void call(AnswerKind kind);
+  /// Gives the answer; the next order is in order_ then.
+  bool answer(AnswerKind kind);
+
+  Superior& superior_;
+  Options options_;
+  const Parts* parts_ = nullptr;
+  Believer* believer_ = nullptr;
+  Order order_;
+  Answer answer_;
+  Surroundings around_;
+  std::vector<AgentId> neighbours_;
+  LedgerPool pool_;
+  EstimatorWorkspace workspace_;
+  RiderPtr rider_;  // of the packet that is being heard
+  bool gone_ = false;
+};
+
+}  // namespace hearsay::remote

@@ -13,8 +13,11 @@ install(DIRECTORY tools/figures DESTINATION ${CMAKE_INSTALL_DATADIR}/hearsay/too
 install(EXPORT hearsay NAMESPACE hearsay:: DESTINATION ${config_dir})
 install(FILES cmake/Dependencies.cmake DESTINATION ${config_dir}
   RENAME hearsay-dependencies.cmake)
-file(WRITE ${PROJECT_BINARY_DIR}/hearsay-config.cmake
-  "include(\${CMAKE_CURRENT_LIST_DIR}/hearsay-dependencies.cmake)\ninclude(\${CMAKE_CURRENT_LIST_DIR}/hearsay.cmake)\n")
+if(HEARSAY_LIVE)
+  install(EXPORT hearsay-idl NAMESPACE hearsay:: DESTINATION ${config_dir})
+endif()
+file(RELATIVE_PATH hearsay_config_to_prefix ${CMAKE_INSTALL_PREFIX}/${config_dir} ${CMAKE_INSTALL_PREFIX})
+configure_file(cmake/hearsay-config.cmake.in ${PROJECT_BINARY_DIR}/hearsay-config.cmake @ONLY)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/hearsay-config-version.cmake
   COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/hearsay-config.cmake

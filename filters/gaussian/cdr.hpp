@@ -1,4 +1,4 @@
-// XCDR1, little-endian, for the codecs of this room: four bytes of encapsulation header, then
+// XCDR1, little-endian, for codecs: four bytes of encapsulation header, then
 // natural alignment counted from the end of the header. Not for users.
 #pragma once
 
@@ -51,6 +51,10 @@ class Writer {
     store(body_ + offset_, value);
     offset_ += 8;
   }
+  void octets(std::span<const std::byte> values) {
+    std::copy(values.begin(), values.end(), body_ + offset_);
+    offset_ += values.size();
+  }
 
  private:
   std::byte* body_;
@@ -70,6 +74,13 @@ class Reader {
     if (at + 4 > body_.size()) return false;
     value = load<std::uint32_t>(body_.data() + at);
     offset_ = at + 4;
+    return true;
+  }
+  bool u64(std::uint64_t& value) {
+    const std::size_t at = aligned(offset_, 8);
+    if (at + 8 > body_.size()) return false;
+    value = load<std::uint64_t>(body_.data() + at);
+    offset_ = at + 8;
     return true;
   }
   /// Room for `count` doubles from here on?

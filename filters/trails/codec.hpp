@@ -7,7 +7,7 @@
 //   struct TrailPlace  { double time_s; unsigned long event; Identity identity; };
 //   struct TrailCrumb  { double created_s; unsigned long event, goal; Identity identity;
 //                        float distance_s; };
-//   struct TrailPacket { TrailHead head; sequence<TrailPlace> places;  // by event, rising
+//   struct TrailPart   { TrailHead head; sequence<TrailPlace> places;  // by event, rising
 //                        sequence<TrailCrumb> crumbs;
 //                        sequence<float> positions; };  // of the places, then of the crumbs
 //

@@ -10,8 +10,14 @@
 namespace hearsay {
 namespace {
 
-// Messages of one kind are understood by all who encode theirs alike.
-const char* kind_of(gaussian::MessageForm form) {
+gaussian::MessageForm form_of(const EstimatorAgent::Options& options) {
+  return options.window ? gaussian::MessageForm::plain
+                        : message_form(options.rule, options.content);
+}
+
+}  // namespace
+
+const char* message_kind(gaussian::MessageForm form) {
   using gaussian::MessageForm;
   switch (form) {
     case MessageForm::split:
@@ -30,19 +36,12 @@ const char* kind_of(gaussian::MessageForm form) {
   return "gaussian";
 }
 
-gaussian::MessageForm form_of(const EstimatorAgent::Options& options) {
-  return options.window ? gaussian::MessageForm::plain
-                        : message_form(options.rule, options.content);
-}
-
-}  // namespace
-
 EstimatorAgent::EstimatorAgent(Context& context, EstimatorWitness& witness, Options options)
     : Agent(context),
       witness_(witness),
       options_(std::move(options)),
       estimator_(make_estimator(context, witness, options_)),
-      message_kind_(context.simulation().record().name(kind_of(form_of(options_)))),
+      message_kind_(context.simulation().record().name(hearsay::message_kind(form_of(options_)))),
       policy_(options_.policy),
       alone_(options_.subjects, options_.dimension, options_.motion) {
   witness_.watch(context.id(), *estimator_);

@@ -17,6 +17,10 @@
 
 namespace hearsay {
 
+/// The kind of an estimator's messages: those of one kind are understood by all who encode theirs
+/// alike.
+const char* message_kind(gaussian::MessageForm form);
+
 class EstimatorAgent final : public Agent, public MeasurementReceiver {
  public:
   struct Options {

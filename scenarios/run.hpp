@@ -90,8 +90,8 @@ class Run {
   Simulation& simulation() { return simulation_; }
   /// Leaves final values and closes the record. @return how it ended: also this may fail.
   RunEnd finish(RunEnd end);
-  /// All agents, by number.
-  Agent& agent(AgentId id) { return *agents_[static_cast<std::size_t>(id)]; }
+  /// What is estimated, with the truth of this run.
+  const std::vector<Subject>& subjects() const { return subjects_; }
   /// The agent's process is gone, or there is another: its radio is off, or on.
   void set_reachable(AgentId id, bool reachable) { radio_->set_up(id, reachable); }
 

@@ -75,7 +75,7 @@ std::shared_ptr<const PreparedScenario> prepared_of(const std::string& file,
 }
 
 struct Result {
-  std::vector<std::byte> run, ledger;
+  std::string run, ledger;
   RunEnd end;
 };
 
@@ -86,7 +86,7 @@ Result result_of(const std::shared_ptr<const PreparedScenario>& prepared, Run::O
   options.ledger_digest = &ledger;
   Run run(prepared, catalog, options);
   const RunEnd end = run.run();
-  return {std::move(digest.bytes), std::move(ledger.bytes), end};
+  return {std::move(digest.all), std::move(ledger.all), end};
 }
 
 /// The life of an agent in its thread.

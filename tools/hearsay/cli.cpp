@@ -160,6 +160,89 @@ void add_export(CLI::App& app, Action& action) {
       [&action, options] { action = [options] { return program::export_csv(*options); }; });
 }
 
+/// What the processes of a fleet have in common.
+CLI::App* add_fleet(CLI::App& app, const std::string& name, const std::string& what,
+                    const std::string& examples, LiveVerb& options) {
+  CLI::App* verb = add_verb(app, name, what, examples);
+  verb->add_option("scenario", options.scenario, "Scenario file (TOML)")->required();
+  verb->add_option("--set", options.set, "Override a key of the scenario: key=value; repeatable")
+      ->take_all()
+      ->allow_extra_args(false);
+  verb->add_option("--domain", options.domain, "DDS domain (77)")->check(CLI::Range(0, 230));
+  verb->add_option("--interface", options.interface,
+                   "Network interface, e.g. eth0; opens the fleet to that network (default: this "
+                   "machine alone)");
+  verb->add_option("--radio", options.radio,
+                   "scenario: the world's radio loses, delays and reaches as the scenario says; "
+                   "direct: agents hear each other over DDS itself, in real time")
+      ->check(CLI::IsMember({"scenario", "direct"}));
+  verb->add_flag("--status", options.status)->group("");
+  return verb;
+}
+
+void add_world_options(CLI::App* verb, LiveVerb& options) {
+  verb->add_option("--seed", options.seed, "Seed of all random draws (default: the scenario's)");
+  CLI::Option* lockstep = verb->add_flag(
+      "--lockstep", options.lockstep,
+      "The world gives out time and waits for each agent: the digest of the simulated run");
+  verb->add_option("--speed", options.speed, "Real time: simulated seconds a second (1)")
+      ->check(CLI::Range(1e-3, 1e3))
+      ->excludes(lockstep);
+  verb->add_option("--out", options.out, "Store the run in this SQLite file");
+  verb->add_flag("--digest", options.digest, "Print the digest alone");
+  verb->add_flag("--json", options.json, "Print as JSON");
+}
+
+void add_patience(CLI::App* verb, LiveVerb& options, const std::string& whom) {
+  verb->add_option("--patience", options.patience_s, "Seconds to wait for " + whom + " (30)")
+      ->check(CLI::Range(0.1, 86400.0));
+}
+
+void add_live(CLI::App& app, const Catalog& catalog, Action& action) {
+  auto options = std::make_shared<LiveVerb>();
+  CLI::App* verb = add_fleet(app, "live", "Run a scenario as processes: a world and its agents",
+                             "  hearsay live ring.toml --lockstep --digest\n"
+                             "  hearsay live ring.toml --speed 10 --out live.db\n"
+                             "  hearsay live ring.toml --radio direct",
+                             *options);
+  verb->add_option("--fleet", options->fleet, "Name of the fleet (default: one of its own)");
+  add_world_options(verb, *options);
+  verb->callback([&action, options, &catalog] {
+    action = [options, &catalog] { return program::live_fleet(*options, catalog); };
+  });
+}
+
+void add_world(CLI::App& app, const Catalog& catalog, Action& action) {
+  auto options = std::make_shared<LiveVerb>();
+  CLI::App* verb =
+      add_fleet(app, "world", "The world of a fleet as a process: truth, sensors, radio and record",
+                "  hearsay world ring.toml --fleet mine --out mine.db\n"
+                "  hearsay world ring.toml --fleet mine --lockstep",
+                *options);
+  options->fleet = "hearsay";
+  verb->add_option("--fleet", options->fleet, "Name of the fleet (hearsay)");
+  add_world_options(verb, *options);
+  add_patience(verb, *options, "all agents");
+  verb->callback([&action, options, &catalog] {
+    action = [options, &catalog] { return program::live_world(*options, catalog); };
+  });
+}
+
+void add_agent(CLI::App& app, const Catalog& catalog, Action& action) {
+  auto options = std::make_shared<LiveVerb>();
+  CLI::App* verb = add_fleet(app, "agent", "One agent of a scenario as a process",
+                             "  hearsay agent ring.toml --id 0 --fleet mine\n"
+                             "  hearsay agent ring.toml --id 3 --fleet mine --interface eth0",
+                             *options);
+  options->fleet = "hearsay";
+  verb->add_option("--fleet", options->fleet, "Name of the fleet (hearsay)");
+  verb->add_option("--id", options->agent, "Which agent, from 0 in file order")->required();
+  add_patience(verb, *options, "a world");
+  verb->callback([&action, options, &catalog] {
+    action = [options, &catalog] { return program::live_agent(*options, catalog); };
+  });
+}
+
 }  // namespace
 
 int run_program(int argc, char** argv, const Catalog& catalog) {
@@ -180,6 +263,9 @@ int run_program(int argc, char** argv, const Catalog& catalog) {
   add_list(app, catalog, action);
   add_diff(app, action);
   add_export(app, action);
+  add_live(app, catalog, action);
+  add_world(app, catalog, action);
+  add_agent(app, catalog, action);
   try {
     app.parse(argc, argv);
     return action();

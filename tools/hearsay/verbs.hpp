@@ -79,4 +79,25 @@ struct ExportVerb {
 };
 int export_csv(const ExportVerb& verb);
 
+/// Of `agent`, `world` and `live`; each uses some of it.
+struct LiveVerb {
+  std::string scenario;
+  std::vector<std::string> set;
+  std::optional<std::uint64_t> seed;
+  int agent = 0;
+  std::string fleet;  ///< live: empty: one of its own
+  std::string interface;
+  std::uint32_t domain = 77;
+  std::string radio = "scenario";  ///< or "direct"
+  bool lockstep = false;
+  double speed = 1.0;
+  double patience_s = 30.0;
+  std::string out;
+  bool digest = false, json = false;
+  bool status = false;  ///< lines for `hearsay live`
+};
+int live_agent(const LiveVerb& verb, const Catalog& catalog);
+int live_world(const LiveVerb& verb, const Catalog& catalog);
+int live_fleet(const LiveVerb& verb, const Catalog& catalog);
+
 }  // namespace hearsay::program

@@ -1,0 +1,147 @@
+#include "tools/live/air.hpp"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "filters/gaussian/message_forms.hpp"
+#include "filters/gaussian/trajectory_codec.hpp"
+#include "scenarios/estimators.hpp"
+
+namespace hearsay::fleet {
+namespace {
+
+using gaussian::Belief;
+using gaussian::Definiteness;
+using gaussian::MessageForm;
+
+bool is_sound(const Belief& belief) {
+  const Definiteness kind = gaussian::definiteness(belief);
+  return belief.xi.allFinite() && belief.omega.allFinite() &&
+         (kind == Definiteness::positive || kind == Definiteness::singular);
+}
+
+std::optional<MessageForm> form_named(std::string_view kind) {
+  for (const MessageForm form :
+       {MessageForm::plain, MessageForm::split, MessageForm::consensus, MessageForm::hybrid,
+        MessageForm::diagonal, MessageForm::quantised}) {
+    if (kind == message_kind(form)) return form;
+  }
+  return std::nullopt;
+}
+
+bool is_sound(MessageForm form, bool moving, std::span<const std::byte> bytes) {
+  gaussian::StampedMessage message;
+  gaussian::MessageExtras extras;
+  const bool decoded = moving ? gaussian::decode(form, bytes, message, extras)
+                              : gaussian::decode(form, bytes, message.message, extras);
+  if (!decoded) return false;
+  const auto sound = [](const Belief& belief) { return is_sound(belief); };
+  // A split belief's fresh part is a matrix alone.
+  const auto finite = [](const Belief& belief) { return belief.omega.allFinite(); };
+  const auto& beliefs = message.message.beliefs;
+  return std::all_of(beliefs.begin(), beliefs.end(),
+                     [&](const gaussian::BeliefEntry& entry) { return sound(entry.belief); }) &&
+         std::all_of(extras.fresh.begin(), extras.fresh.end(), finite);
+}
+
+bool is_sound_trajectory(std::span<const std::byte> bytes) {
+  gaussian::TrajectoryMessage message;
+  if (!gaussian::decode(bytes, message)) return false;
+  for (const gaussian::TrajectoryEntry& entry : message.trajectories) {
+    for (const gaussian::TrajectoryStep& step : entry.steps) {
+      if (!is_sound(step.information) || !step.next.allFinite()) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+Tongue tongue_of(const PreparedScenario& prepared, AgentId id) {
+  const AgentSpec& spec = *prepared.specs[static_cast<std::size_t>(id)];
+  if (spec.kind != "estimator") return {"octets", live::States::still};
+  if (spec.estimator.kind == "trajectory-gaussian") {
+    return {message_kind(MessageForm::plain), live::States::trajectory};
+  }
+  return {message_kind(message_form_of(spec)),
+          prepared.motion ? live::States::moving : live::States::still};
+}
+
+std::vector<Tongue> tongues_of(const PreparedScenario& prepared) {
+  std::set<Tongue> tongues;
+  for (std::size_t i = 0; i < prepared.specs.size(); ++i) {
+    tongues.insert(tongue_of(prepared, static_cast<AgentId>(i)));
+  }
+  return {tongues.begin(), tongues.end()};
+}
+
+bool is_sound(const Tongue& tongue, std::span<const std::byte> message) {
+  const std::optional<MessageForm> form = form_named(tongue.kind);
+  if (!form) return true;
+  if (tongue.states == live::States::trajectory) return is_sound_trajectory(message);
+  return is_sound(*form, tongue.states == live::States::moving, message);
+}
+
+std::string said_partition(const std::string& fleet, AgentId agent) {
+  return live::agent_partition(fleet, static_cast<std::uint32_t>(agent)) + ".said";
+}
+
+AirOut::AirOut(live::Port& port, std::string partition)
+    : port_(port), partition_(std::move(partition)) {}
+
+bool AirOut::write(const Tongue& tongue, const Parcel& parcel) {
+  const bool known = form_named(tongue.kind).has_value();
+  const live::TopicId topic = known ? live::air_topic(tongue.kind, tongue.states, parcel.message)
+                                    : live::air_topics("octets", live::States::still).front();
+  auto found = writers_.find(topic.name);
+  if (found == writers_.end()) {
+    found = writers_.emplace(topic.name, port_.writer(topic, partition_)).first;
+  }
+  if (known) {
+    live::pack(parcel.envelope, parcel.message, bytes_);
+  } else {
+    live::pack_octets(parcel.envelope, parcel.kind, parcel.message, bytes_);
+  }
+  return found->second.write(bytes_);
+}
+
+AirIn::AirIn(live::Port& port, const std::string& partition, const std::vector<Tongue>& tongues) {
+  for (const Tongue& tongue : tongues) {
+    for (const live::TopicId& topic : live::air_topics(tongue.kind, tongue.states)) {
+      ears_.push_back({tongue, port.reader(topic, partition)});
+    }
+  }
+}
+
+bool AirIn::take(Parcel& parcel) {
+  for (Ear& ear : ears_) {
+    while (ear.reader.take(bytes_)) {
+      if (open(ear.tongue, parcel)) return true;
+      ++dropped_;
+    }
+  }
+  return false;
+}
+
+bool AirIn::open(const Tongue& tongue, Parcel& parcel) {
+  if (!form_named(tongue.kind)) {
+    std::span<const std::byte> message;
+    if (!live::unpack_octets(bytes_, parcel.envelope, parcel.kind, message)) return false;
+    parcel.message.assign(message.begin(), message.end());
+    return true;
+  }
+  std::span<std::byte> message;
+  if (!live::unpack(bytes_, parcel.envelope, message)) return false;
+  parcel.kind = tongue.kind;
+  parcel.message.assign(message.begin(), message.end());
+  return is_sound(tongue, parcel.message);
+}
+
+std::uint64_t AirIn::dropped() const {
+  std::uint64_t sum = dropped_;
+  for (const Ear& ear : ears_) sum += ear.reader.malformed();
+  return sum;
+}
+
+}  // namespace hearsay::fleet

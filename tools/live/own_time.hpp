@@ -1,0 +1,94 @@
+// An agent that keeps its own time, by the clock on the wall: what it plans happens when it is due,
+// what comes from the world or from others counts when it arrives.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "agents/catalog.hpp"
+#include "agents/estimator_witness.hpp"
+#include "agents/remote/protocol.hpp"
+#include "net/live/messages.hpp"
+#include "scenarios/solo.hpp"
+#include "tools/live/air.hpp"
+#include "tools/live/options.hpp"
+#include "tools/live/reactor.hpp"
+
+namespace hearsay::fleet {
+
+class OwnTime final : private RadioPort, private EstimatorWitness, private RecordTap {
+ public:
+  /// All outlive this.
+  OwnTime(std::shared_ptr<const PreparedScenario> prepared, const AgentOptions& options,
+          const live::Welcome& welcome, live::Port& port, Reactor& reactor);
+  ~OwnTime() override;
+
+  /// Until it is dismissed or asked to stop. @return what went wrong, or nothing.
+  std::string serve(const Catalog& catalog, live::Reader& orders,
+                    const std::function<void(const std::string&)>& status);
+
+ private:
+  bool send(AgentId sender, const Outgoing& packet) override;
+  void tell_of_empty_queue(AgentId) override {}
+  std::size_t waiting(AgentId) const override { return 0; }
+  bool up(AgentId) const override { return around_.up; }
+  std::span<const AgentId> neighbours(AgentId) override { return neighbours_; }
+  bool neighbours_change() const override { return around_.hears_strangers; }
+  Point position(AgentId) const override;
+  void watch(AgentId, Believer& believer) override { believer_ = &believer; }
+  double distance_error_m(int subject, const gaussian::Belief& belief) override;
+  LedgerPool* ledgers() override { return nullptr; }
+  EstimatorWorkspace& workspace() override { return workspace_; }
+  void on_scalar(const ScalarRow& row, Origin origin) override;
+  void on_series(const SeriesRow& row, Origin origin) override;
+  void on_event(Time time, AgentId agent, std::string_view kind, std::string_view detail) override;
+
+  Time now();
+  void set_clock(std::int64_t now_ns);
+  void look_around(const remote::Order& order);
+  void begin(const Catalog& catalog, const remote::Order& order);
+  /// @return false once it is dismissed.
+  bool obey(const Catalog& catalog, const remote::Order& order);
+  bool take_orders(const Catalog& catalog, live::Reader& orders);
+  void take_measurements();
+  void take_packets();
+  void hear(const Parcel& parcel);
+  void catch_up();
+  /// Lets something happen to the agent now; what it throws ends its life.
+  void at_once(const std::function<void()>& happening);
+  std::int64_t stamp_now();
+  void report(bool last);
+  std::string failure() const;
+  std::string status_text();
+
+  std::shared_ptr<const PreparedScenario> prepared_;
+  const AgentOptions& options_;
+  live::Welcome welcome_;
+  Reactor& reactor_;
+  Tongue tongue_;
+  AirOut air_out_;
+  AirIn air_in_;
+  live::Reader measurements_;
+  live::Reader clock_;
+  live::Writer reports_;
+  std::unique_ptr<Solo> solo_;  // from the order to start on
+  Believer* believer_ = nullptr;
+  remote::Surroundings around_;
+  std::vector<AgentId> neighbours_;
+  EstimatorWorkspace workspace_;
+  live::Report report_;
+  std::map<std::uint32_t, std::uint64_t> heard_;  // direct: number of the last packet, by sender
+  std::vector<std::byte> bytes_;
+  WallTime begin_;          // when this object was made
+  double ahead_s_ = -1e18;  // fleet's time less wall time since begin_ × speed
+  std::uint64_t number_ = 0;
+  std::uint64_t old_ = 0;  // packets that were heard before
+  std::uint64_t missed_ = 0;
+  WallTime clock_heard_;
+};
+
+}  // namespace hearsay::fleet

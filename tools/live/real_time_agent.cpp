@@ -1,0 +1,205 @@
+#include "tools/live/real_time_agent.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace hearsay::fleet {
+namespace {
+
+using namespace std::chrono_literals;
+using remote::Order;
+using remote::OrderKind;
+
+/// How long the world stands still for what an agent believes, or leaves at the end.
+constexpr double report_wait_s = 0.05, last_wait_s = 2.0;
+
+}  // namespace
+
+RealTimeAgent::RealTimeAgent(Context& context, live::Port& port, Member& member, Reactor& reactor,
+                             Options options)
+    : StandIn(context),
+      member_(member),
+      reactor_(reactor),
+      options_(std::move(options)),
+      believer_(*this),
+      line_(member, reactor, context.id()),
+      air_out_(port, live::agent_partition(port.fleet(), static_cast<std::uint32_t>(context.id()))),
+      air_in_(port, said_partition(port.fleet(), context.id()), {options_.tongue}) {
+  beliefs_.resize(static_cast<std::size_t>(options_.what.subjects),
+                  {gaussian::Belief::unknown(std::max(options_.what.dimension, 1)), Ledger()});
+}
+
+Order RealTimeAgent::order(OrderKind kind) {
+  Order order{.kind = kind, .now = context().now()};
+  order.surroundings.up = context().up();
+  order.surroundings.hears_strangers = context().hears_strangers();
+  if (options_.what.knows_place) order.surroundings.position_m = context().position();
+  const std::span<const AgentId> now = context().neighbours();
+  told_neighbours_.assign(now.begin(), now.end());
+  order.surroundings.neighbours = told_neighbours_;
+  return order;
+}
+
+void RealTimeAgent::tell(const Order& order) {
+  if (!silent_ && member_.ours) line_.tell(order);
+}
+
+void RealTimeAgent::start() {
+  silent_ = false;
+  heard_ = 0;
+  Order begin = order(OrderKind::start);
+  begin.lives = lives_++;
+  tell(begin);
+}
+
+void RealTimeAgent::tell_neighbours() {
+  const std::span<const AgentId> now = context().neighbours();
+  if (std::equal(now.begin(), now.end(), told_neighbours_.begin(), told_neighbours_.end())) return;
+  tell(order(OrderKind::go_on));
+}
+
+void RealTimeAgent::on_measurement(const Measurement& measurement) {
+  if (silent_) return;
+  live::encode(live::Measurement{.agent = static_cast<std::uint32_t>(context().id()),
+                                 .subject = static_cast<std::uint32_t>(measurement.subject),
+                                 .number = ++number_,
+                                 .now_ns = context().now().nanoseconds(),
+                                 .information = measurement.information},
+               bytes_);
+  member_.measurements.write(bytes_);
+}
+
+void RealTimeAgent::on_packet(const Packet& packet) {
+  if (silent_) return;
+  const std::string& kind = context().simulation().record().text(packet.kind);
+  const auto tongue =
+      std::find_if(options_.tongues.begin(), options_.tongues.end(), [&](const Tongue& candidate) {
+        return candidate.kind == kind && is_sound(candidate, packet.bytes);
+      });
+  parcel_.envelope = {.sender = static_cast<std::uint32_t>(packet.sender),
+                      .receiver = static_cast<std::uint32_t>(packet.receiver),
+                      .number = ++number_,
+                      .sent_ns = packet.sent.nanoseconds()};
+  parcel_.kind = kind;
+  parcel_.message.assign(packet.bytes.begin(), packet.bytes.end());
+  air_out_.write(tongue == options_.tongues.end() ? Tongue{.kind = "octets"} : *tongue, parcel_);
+}
+
+void RealTimeAgent::on_up(bool forgets) {
+  Order up = order(OrderKind::up);
+  up.yes = forgets;
+  tell(up);
+}
+
+void RealTimeAgent::finish() { ask(OrderKind::finish, last_wait_s); }
+
+bool RealTimeAgent::take() {
+  bool any = false;
+  while (take_report()) any = true;
+  while (air_in_.take(parcel_)) {
+    any = true;
+    const live::Envelope& envelope = parcel_.envelope;
+    if (envelope.sender != static_cast<std::uint32_t>(context().id()) ||
+        envelope.number <= heard_) {
+      ++dropped_;
+      continue;
+    }
+    heard_ = envelope.number;
+    say(parcel_);
+  }
+  return any;
+}
+
+void RealTimeAgent::say(const Parcel& parcel) {
+  Outgoing packet;
+  packet.kind = context().simulation().record().name(parcel.kind);
+  packet.bytes = parcel.message;
+  if (parcel.envelope.receiver != live::everybody) {
+    packet.receiver = static_cast<AgentId>(parcel.envelope.receiver);
+  }
+  if (parcel.envelope.tick >= 0) packet.tick = static_cast<std::uint64_t>(parcel.envelope.tick);
+  packet.subject = parcel.envelope.subject;
+  context().send(packet);
+}
+
+bool RealTimeAgent::take_report() {
+  if (!member_.reports.take(bytes_)) return false;
+  live::Report report;
+  if (!live::decode(bytes_, report) || report.agent != static_cast<std::uint32_t>(context().id())) {
+    ++dropped_;
+    return true;
+  }
+  for (TrackedBelief& tracked : beliefs_) {
+    tracked.belief = gaussian::Belief::unknown(tracked.belief.dimension());
+  }
+  for (const gaussian::BeliefEntry& entry : report.beliefs) {
+    if (entry.subject >= beliefs_.size() || entry.belief.dimension() != options_.what.dimension) {
+      ++dropped_;
+      continue;
+    }
+    beliefs_[entry.subject].belief = entry.belief;
+  }
+  counts_ = {.measurements = report.counts.measurements,
+             .fusions = report.counts.fusions,
+             .skipped = report.counts.skipped,
+             .refused = report.counts.refused,
+             .late = report.counts.late,
+             .fusion_gain_max = report.counts.fusion_gain_max};
+  missed_ = report.missed;
+  for (const live::Row& row : report.rows) record(row);
+  return true;
+}
+
+void RealTimeAgent::record(const live::Row& row) {
+  Record& record = context().simulation().record();
+  const Time time = std::min(Time::nanoseconds(row.now_ns), context().now());
+  switch (row.kind) {
+    case live::Row::Kind::scalar:
+      return record.scalar(context().id(), record.name(row.name), row.value);
+    case live::Row::Kind::series:
+      return record.series(time, context().id(), record.name(row.text), record.name(row.name),
+                           row.value);
+    case live::Row::Kind::event:
+      return record.event(time, context().id(), row.name, row.text);
+  }
+}
+
+void RealTimeAgent::fall_silent() {
+  if (silent_) return;
+  silent_ = true;
+  member_.here = false;
+  for (TrackedBelief& tracked : beliefs_) {
+    tracked.belief = gaussian::Belief::unknown(tracked.belief.dimension());
+  }
+  context().record_event("silent", "its process is gone");
+}
+
+void RealTimeAgent::ask(OrderKind kind, double wait_s) {
+  if (silent_ || !member_.ours) return;
+  while (take_report()) {
+  }
+  Order report = order(kind);
+  report.stamp = stamp_;
+  tell(report);
+  const WallTime until = WallClock::now() + wall(wait_s);
+  while (!take_report()) {
+    if (WallClock::now() >= until || reactor_.stopped() || !member_.alive()) {
+      ++late_reports_;
+      return;
+    }
+    reactor_.wait(until);
+  }
+}
+
+void RealTimeAgent::Beliefs::advance(std::int64_t now) {
+  agent_.stamp_ = now;
+  if (agent_.asked_ == agent_.context().now()) return;
+  agent_.asked_ = agent_.context().now();
+  agent_.ask(OrderKind::report, report_wait_s);
+}
+
+const TrackedBelief& RealTimeAgent::Beliefs::tracked(int subject) const {
+  return agent_.beliefs_[static_cast<std::size_t>(subject)];
+}
+
+}  // namespace hearsay::fleet

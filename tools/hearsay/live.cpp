@@ -74,16 +74,15 @@ int live_world(const LiveVerb& verb, const Catalog& catalog) {
   const std::uint64_t seed = verb.seed.value_or(scenario.seed);
   if (!verb.out.empty()) probe_output(verb.out);
   say_where_it_listens(verb);
-  fleet::WorldResult result = fleet::run_world(prepared, catalog,
-                                               {.fleet = fleet_of(verb),
-                                                .seed = seed,
-                                                .lockstep = verb.lockstep,
-                                                .speed = verb.speed,
-                                                .direct = verb.radio == "direct",
-                                                .patience_s = verb.patience_s,
-                                                .scenario_hash = scenario_hash(as_given),
-                                                .version = version_text()},
-                                               status_printer(verb));
+  const fleet::WorldOptions options{.fleet = fleet_of(verb),
+                                    .seed = seed,
+                                    .lockstep = verb.lockstep,
+                                    .speed = verb.speed,
+                                    .direct = verb.radio == "direct",
+                                    .patience_s = verb.patience_s,
+                                    .scenario_hash = scenario_hash(as_given),
+                                    .version = version_text()};
+  fleet::WorldResult result = fleet::run_world(prepared, catalog, options, status_printer(verb));
   if (!result.trouble.empty()) {
     fmt::print(stderr, "hearsay world: {}\n", result.trouble);
     return exit_failed;
@@ -103,14 +102,14 @@ int live_agent(const LiveVerb& verb, const Catalog& catalog) {
   const Scenario scenario = scenario_of(verb, catalog);
   const auto prepared = prepared_of(scenario, catalog);
   say_where_it_listens(verb);
-  const std::string trouble = fleet::run_agent(prepared, catalog,
-                                               {.fleet = fleet_of(verb),
-                                                .id = verb.agent,
-                                                .direct = verb.radio == "direct",
-                                                .patience_s = verb.patience_s,
-                                                .scenario_hash = scenario_hash(scenario),
-                                                .version = version_text()},
-                                               status_printer(verb));
+  const fleet::AgentOptions options{.fleet = fleet_of(verb),
+                                    .id = verb.agent,
+                                    .direct = verb.radio == "direct",
+                                    .patience_s = verb.patience_s,
+                                    .memory = verb.memory,
+                                    .scenario_hash = scenario_hash(scenario),
+                                    .version = version_text()};
+  const std::string trouble = fleet::run_agent(prepared, catalog, options, status_printer(verb));
   if (trouble.empty()) return exit_done;
   fmt::print(stderr, "hearsay agent {}: {}\n", verb.agent, trouble);
   return exit_failed;

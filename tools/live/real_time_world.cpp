@@ -109,7 +109,9 @@ void RealTimeWorld::look_after(Run& run) {
       agent.fall_silent();
       run.set_reachable(id, false);
     } else if (new_here) {
-      simulation.record().event(simulation.now(), id, "joined again", "another process");
+      simulation.record().event(
+          simulation.now(), id, "joined again",
+          roster_.member(id).remembers ? "with its memory" : "without memory");
       run.set_reachable(id, true);
       agent.start();
     }

@@ -8,6 +8,7 @@
 #include <dds/ddsrt/heap.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <memory>
 
@@ -100,7 +101,7 @@ ddsi_serdata* from_ser_iov(const ddsi_sertype* type, ddsi_serdata_kind kind,
   std::size_t end = 0;
   for (std::size_t i = 0; i < count && end < size; ++i) {
     const std::size_t length = std::min<std::size_t>(parts[i].iov_len, size - end);
-    std::memcpy(sample->wire() + end, parts[i].iov_base, length);
+    if (length > 0) std::memcpy(sample->wire() + end, parts[i].iov_base, length);
     end += length;
   }
   if (end == size && kind == SDK_DATA) settle(*sample, size);
@@ -245,11 +246,14 @@ ddsi_sertype* make_raw_type(const dds_topic_descriptor_t& descriptor) {
 }
 void release(ddsi_sertype* type) { ddsi_sertype_unref(type); }
 
-ddsi_serdata* make_sample(const ddsi_sertype* type, std::span<const std::byte> bytes) {
-  ddsrt_iovec_t whole{};
-  whole.iov_base = const_cast<std::byte*>(bytes.data());
-  whole.iov_len = bytes.size();
-  return from_ser_iov(type, SDK_DATA, 1, &whole, bytes.size());
+ddsi_serdata* make_sample(const ddsi_sertype* type, std::span<const std::byte> first,
+                          std::span<const std::byte> rest) {
+  std::array<ddsrt_iovec_t, 2> parts{};
+  parts[0].iov_base = const_cast<std::byte*>(first.data());
+  parts[0].iov_len = first.size();
+  parts[1].iov_base = const_cast<std::byte*>(rest.data());
+  parts[1].iov_len = rest.size();
+  return from_ser_iov(type, SDK_DATA, parts.size(), parts.data(), first.size() + rest.size());
 }
 
 std::optional<std::span<const std::byte>> body_of(const ddsi_serdata* sample) {

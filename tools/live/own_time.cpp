@@ -53,7 +53,7 @@ OwnTime::OwnTime(std::shared_ptr<const PreparedScenario> prepared, const AgentOp
 OwnTime::~OwnTime() = default;
 
 std::string OwnTime::serve(const Catalog& catalog, live::Reader& orders,
-                          const std::function<void(const std::string&)>& status) {
+                           const std::function<void(const std::string&)>& status) {
   WallTime next_status;
   while (!reactor_.stopped()) {
     while (clock_.take(bytes_)) {

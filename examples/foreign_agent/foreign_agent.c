@@ -200,6 +200,7 @@ static void live(dds_entity_t p) {
   join(open_end(true, p, "hearsay_hello", &hearsay_Hello_desc, NULL),
        open_end(false, p, "hearsay_welcome", &hearsay_Welcome_desc, NULL));
   printf("foreign_agent: welcome as agent %u of fleet '%s'\n", me.id, me.fleet);
+  fflush(stdout);
   const uint32_t incarnation = (uint32_t)(dds_time() / DDS_SECS(1));
   double next_report_s = 0, next_talk_s = me.talk_s;
   for (int state = waiting; (state = look_at_clock(clock, state)) != ended;) {

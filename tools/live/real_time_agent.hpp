@@ -17,6 +17,7 @@ class RealTimeAgent final : public remote::StandIn {
     remote::RemoteAgent::Options what;
     Tongue tongue;                ///< what it says
     std::vector<Tongue> tongues;  ///< what it hears
+    std::uint32_t agents = 0;     ///< in the scenario
   };
   /// All outlive this.
   RealTimeAgent(Context& context, live::Port& port, Member& member, Reactor& reactor,
@@ -45,7 +46,7 @@ class RealTimeAgent final : public remote::StandIn {
   std::uint64_t late_reports() const { return late_reports_; }
   /// Deadlines that it missed, as it says.
   std::uint64_t missed() const { return missed_; }
-  /// Packets of it that were no sound beliefs, of somebody else, or old.
+  /// Packets of it that were no sound beliefs, of or to nobody whom the scenario has, or old.
   std::uint64_t dropped() const { return dropped_ + air_in_.dropped(); }
 
  private:
@@ -62,6 +63,7 @@ class RealTimeAgent final : public remote::StandIn {
 
   remote::Order order(remote::OrderKind kind);
   void tell(const remote::Order& order);
+  bool may_say(const live::Envelope& envelope) const;
   void say(const Parcel& parcel);
   bool take_report();
   void record(const live::Row& row);

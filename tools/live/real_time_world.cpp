@@ -30,11 +30,13 @@ RealTimeWorld::RealTimeWorld(const PreparedScenario& prepared, live::Port& port,
 
 std::unique_ptr<remote::StandIn> RealTimeWorld::stand_in(Context& context, EstimatorWitness*) {
   const AgentId id = context.id();
+  const auto agents = static_cast<std::uint32_t>(roster_.size());
   auto agent =
       std::make_unique<RealTimeAgent>(context, port_, roster_.member(id), reactor_,
                                       RealTimeAgent::Options{.what = remote_options(prepared_, id),
                                                              .tongue = tongue_of(prepared_, id),
-                                                             .tongues = tongues_of(prepared_)});
+                                                             .tongues = tongues_of(prepared_),
+                                                             .agents = agents});
   agents_[static_cast<std::size_t>(id)] = agent.get();
   return agent;
 }

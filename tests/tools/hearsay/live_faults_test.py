@@ -1,0 +1,142 @@
+"""Processes of a fleet that are killed, and that come back."""
+import signal
+import unittest
+
+from live_bed import LiveBed
+
+# Nothing is lost, so that what is not heard was not said; who is outdated is refused.
+CALM = ["--set", "radio.loss.probability=0.0", "--set", 'agents.estimator.fusion="channel-robust"',
+        "--set", "record.messages=all"]
+LONG = {"--lockstep": ["--set", "duration_s=1500"], "--speed": ["--set", "duration_s=80"]}
+
+
+class AnAgentIsKilled(LiveBed):
+    def words(self, mode):
+        return ["ring.toml", *CALM, *LONG[mode]]
+
+    def world(self, mode):
+        pace = ["--lockstep"] if mode == "--lockstep" else ["--speed", 10]
+        return [*pace, "--out", "live.db"]
+
+    def came(self, kind):
+        return self.rows("live.db", "SELECT t_s, agent FROM event WHERE kind = ? ORDER BY t_s", kind)
+
+    def delivered(self, sender, since_s):
+        """@return who got packets that were sent after this."""
+        return {receiver for (receiver,) in self.rows(
+            "live.db", "SELECT receiver FROM message WHERE sender = ? AND sent_s > ? AND fate = 'delivered'",
+            sender, since_s)}
+
+    def expect_that_others_go_on(self, mode, radio=()):
+        words = [*self.words(mode), *radio]
+        world, agents = self.world_and_agents(*words, world=self.world(mode))
+        self.until(lambda: world.now_s() > 0, "the run begins")
+        agents[1].kill()
+        self.ends(world)
+        self.ends(agents[1], -signal.SIGKILL)
+        for other in [0, 2, 3]:
+            self.ends(agents[other])
+        ((silent_s, who),) = self.came("silent")
+        self.assertEqual(who, 1)
+        duration_s = float(words[words.index("--set", 7) + 1].split("=")[1])
+        self.assertTrue(0 < silent_s < duration_s, silent_s)
+        self.assertEqual(self.came("joined again"), [])
+        return silent_s
+
+    def expect_to_join_again(self, mode, radio=()):
+        words = [*self.words(mode), *radio]
+        world, agents = self.world_and_agents(*words, world=self.world(mode))
+        self.until(lambda: world.now_s() > 0, "the run begins")
+        agents[1].kill()
+        self.ends(agents[1], -signal.SIGKILL)
+        agents[1] = self.start("agent", *words, "--id", 1)
+        # A world may not have seen yet that the one before is gone.
+        tries = 1
+        while agents[1].wait() != 0 and tries < 20:
+            self.assertIn("agent 1 is there already", agents[1].trouble())
+            agents[1] = self.start("agent", *words, "--id", 1)
+            tries += 1
+        self.ends(world)
+        for agent in agents:
+            self.ends(agent)
+        ((silent_s, silent),), ((joined_s, joined),) = self.came("silent"), self.came("joined again")
+        self.assertEqual((silent, joined), (1, 1))
+        self.assertLessEqual(silent_s, joined_s)
+        return joined_s
+
+    def expect_to_be_heard(self, joined_s):
+        """What it says counts again: delivered, and not taken for what it said in its life before."""
+        self.assertEqual(self.delivered(1, joined_s), {0, 2})
+        self.assertEqual(self.delivered(0, joined_s), {1, 3})
+        self.assertEqual([self.value("live.db", agent, "messages_refused") for agent in range(4)], [0, 0, 0, 0])
+
+    def test_in_lockstep_the_others_go_on(self):
+        silent_s = self.expect_that_others_go_on("--lockstep")
+        self.assertEqual(self.delivered(1, silent_s), set())
+        self.assertEqual(self.delivered(2, silent_s), {3})
+        self.assertEqual(self.delivered(3, silent_s), {0, 2})
+
+    def test_in_real_time_the_others_go_on(self):
+        silent_s = self.expect_that_others_go_on("--speed")
+        self.assertEqual(self.delivered(1, silent_s), set())
+        self.assertEqual(self.delivered(3, silent_s), {0, 2})
+
+    def test_in_lockstep_another_process_takes_its_place(self):
+        self.expect_to_be_heard(self.expect_to_join_again("--lockstep"))
+
+    def test_in_real_time_another_process_takes_its_place(self):
+        self.expect_to_be_heard(self.expect_to_join_again("--speed"))
+        self.assertGreater(self.value("live.db", 1, "measurements"), 0)
+
+    def test_without_the_worlds_radio_another_process_is_heard_as_well(self):
+        self.expect_to_join_again("--speed", ["--radio", "direct"])
+        self.assertEqual([self.value("live.db", agent, "messages_refused") for agent in range(4)], [0, 0, 0, 0])
+
+    def test_a_fleet_that_was_started_together_goes_on(self):
+        fleet = self.start("live", *self.words("--speed"), *self.world("--speed"))
+        self.until(lambda: len(self.members()) == 6, "all are there")
+        self.until(lambda: "agent 2" not in self.trouble_of(fleet), "")
+        victim = self.child(2)
+        self.until(lambda: self.threads(victim) > 3, "it takes part")
+        self.wait_for_clock()
+        signal_to(victim, signal.SIGKILL)
+        self.ends(fleet)
+        self.assertEqual([who for _, who in self.came("silent")], [2])
+
+
+class TheWorldIsKilled(LiveBed):
+    def expect_agents_to_say_so(self, *pace):
+        words = ["ring.toml", "--set", "duration_s=100000"]
+        world, agents = self.world_and_agents(*words, world=pace)
+        self.until(lambda: world.now_s() > 0, "the run begins")
+        world.kill()
+        for i, agent in enumerate(agents):
+            self.ends(agent, 1)
+            self.assertEqual(agent.trouble(), f"hearsay agent {i}: the world of fleet '{self.fleet}' is gone\n")
+            self.assertEqual(agent.text(), "")
+
+    def test_in_lockstep_agents_end(self):
+        self.expect_agents_to_say_so("--lockstep")
+
+    def test_in_real_time_agents_end(self):
+        self.expect_agents_to_say_so("--speed", 10)
+
+    def test_before_it_began_agents_end(self):
+        world, (agent,) = self.world_and_agents("ring.toml", agents=1)
+        self.until(lambda: len(self.members()) == 2, "both are there")
+        agents_patience = self.start("agent", "ring.toml", "--id", 1, "--patience", 0.3, fleet=self.fleet + "-empty")
+        self.ends(agents_patience, 1)
+        self.assertIn("answered within 0.3 s", agents_patience.trouble())
+        world.kill()
+        self.ends(agent, 1)
+
+    def test_a_fleet_that_was_started_together_fails(self):
+        fleet = self.start("live", "ring.toml", "--set", "duration_s=100000", "--lockstep", "--out", "live.db")
+        self.until(lambda: len(self.members()) == 6, "all are there")
+        signal_to(self.world_of_live(), signal.SIGKILL)
+        self.ends(fleet, 1)
+        self.assertEqual(self.members(), {})
+
+
+if __name__ == "__main__":
+    unittest.main()

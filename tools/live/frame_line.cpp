@@ -21,7 +21,12 @@ bool FrameLine::write(const remote::Order& order) {
   ++out_.number;
   remote::pack(order, out_.content);
   live::encode(out_, bytes_);
-  return member_.orders.write(bytes_);
+  // Where a process was killed, DDS waits a while for it, though another has taken its place.
+  while (!member_.orders.write(bytes_)) {
+    reactor_.wait(WallClock::now());
+    if (reactor_.stopped() || member_.answers.writers_alive() == 0) return false;
+  }
+  return true;
 }
 
 bool FrameLine::exchange(const remote::Order& order, remote::Answer& answer) {

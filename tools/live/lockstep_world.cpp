@@ -36,6 +36,7 @@ RunEnd LockstepWorld::drive(Run& run, const std::function<void(const std::string
   std::uint64_t events = 0;
   EndReason reason = EndReason::time_reached;
   while (!simulation.failed() && !reactor_.stopped()) {
+    simulation.advance(simulation.now());  // whatever was the last event, it is over
     switch_off(run);
     let_join(run);
     const Time next = simulation.next_time();

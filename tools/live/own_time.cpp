@@ -53,7 +53,7 @@ OwnTime::OwnTime(std::shared_ptr<const PreparedScenario> prepared, const AgentOp
 OwnTime::~OwnTime() = default;
 
 std::string OwnTime::serve(const Catalog& catalog, live::Reader& orders,
-                          const std::function<void(const std::string&)>& status) {
+                           const std::function<void(const std::string&)>& status) {
   WallTime next_status;
   while (!reactor_.stopped()) {
     while (clock_.take(bytes_)) {
@@ -116,6 +116,8 @@ bool OwnTime::take_orders(const Catalog& catalog, live::Reader& orders) {
 
 void OwnTime::begin(const Catalog& catalog, const Order& order) {
   set_clock(order.now.nanoseconds());
+  // Above those of the process that had its place before.
+  number_ = std::max(number_, std::uint64_t{order.lives} << 32);
   RadioPort& radio = *this;
   EstimatorWitness& witness = *this;
   RecordTap* const tap = this;

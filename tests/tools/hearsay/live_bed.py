@@ -2,9 +2,11 @@
 none of them is left."""
 import itertools
 import os
+import pty
 import signal
 import sqlite3
 import subprocess
+import threading
 import time
 from pathlib import Path
 
@@ -23,18 +25,32 @@ def arguments_of(pid):
 
 
 class Started:
-    """A process of the program, in a session of its own; what it prints goes into files."""
+    """A process of the program, in a session of its own; what it prints goes into files, by way of a terminal if
+    it is to think that somebody looks on."""
 
-    def __init__(self, folder, words):
+    def __init__(self, folder, words, terminal=False):
         name = f"process{next(NUMBERS)}"
         self.out, self.err = folder / f"{name}.out", folder / f"{name}.err"
         with open(self.out, "wb") as out, open(self.err, "wb") as err:
-            self.process = subprocess.Popen([HEARSAY, *words], cwd=folder, stdin=subprocess.DEVNULL, stdout=out,
+            screen, stdout = pty.openpty() if terminal else (None, out)
+            self.process = subprocess.Popen([HEARSAY, *words], cwd=folder, stdin=subprocess.DEVNULL, stdout=stdout,
                                             stderr=err, start_new_session=True)
         self.pid = self.process.pid
+        self.reader = threading.Thread(target=self.read, args=(screen,), daemon=True) if terminal else None
+        if terminal:
+            os.close(stdout)
+            self.reader.start()
+
+    def read(self, screen):
+        with open(screen, "rb", buffering=0) as terminal, open(self.out, "wb", buffering=0) as out:
+            try:
+                while text := terminal.read(4096):
+                    out.write(text)
+            except OSError:
+                pass  # so says Linux when the other end is closed
 
     def text(self):
-        return self.out.read_text()
+        return self.out.read_text(errors="replace")
 
     def trouble(self):
         return self.err.read_text()
@@ -44,7 +60,10 @@ class Started:
 
     def wait(self, seconds=WAIT_S):
         """@return its exit code, −N if signal N ended it."""
-        return self.process.wait(timeout=seconds)
+        code = self.process.wait(timeout=seconds)
+        if self.reader:
+            self.reader.join(seconds)
+        return code
 
     def over(self):
         return self.process.poll() is not None
@@ -89,9 +108,9 @@ class LiveBed(Bed):
                 pass
         self.assertEqual(left, {}, "processes were left behind")
 
-    def start(self, *words, fleet=None):
+    def start(self, *words, fleet=None, terminal=False):
         verb, *others = map(str, words)
-        return Started(self.dir, [verb, *others, "--fleet", fleet or self.fleet])
+        return Started(self.dir, [verb, *others, "--fleet", fleet or self.fleet], terminal)
 
     def live(self, *words):
         """A whole fleet, from its start to its end. @return what it printed."""

@@ -1,4 +1,5 @@
 """Processes of a fleet that are killed, and that come back."""
+import os
 import signal
 import unittest
 
@@ -7,12 +8,12 @@ from live_bed import LiveBed
 # Nothing is lost, so that what is not heard was not said; who is outdated is refused.
 CALM = ["--set", "radio.loss.probability=0.0", "--set", 'agents.estimator.fusion="channel-robust"',
         "--set", "record.messages=all"]
-LONG = {"--lockstep": ["--set", "duration_s=1500"], "--speed": ["--set", "duration_s=80"]}
+DURATION_S = {"--lockstep": 1500.0, "--speed": 80.0}
 
 
 class AnAgentIsKilled(LiveBed):
     def words(self, mode):
-        return ["ring.toml", *CALM, *LONG[mode]]
+        return ["ring.toml", *CALM, "--set", f"duration_s={DURATION_S[mode]}"]
 
     def world(self, mode):
         pace = ["--lockstep"] if mode == "--lockstep" else ["--speed", 10]
@@ -38,8 +39,7 @@ class AnAgentIsKilled(LiveBed):
             self.ends(agents[other])
         ((silent_s, who),) = self.came("silent")
         self.assertEqual(who, 1)
-        duration_s = float(words[words.index("--set", 7) + 1].split("=")[1])
-        self.assertTrue(0 < silent_s < duration_s, silent_s)
+        self.assertTrue(0 < silent_s < DURATION_S[mode], silent_s)
         self.assertEqual(self.came("joined again"), [])
         return silent_s
 
@@ -93,15 +93,13 @@ class AnAgentIsKilled(LiveBed):
         self.assertEqual([self.value("live.db", agent, "messages_refused") for agent in range(4)], [0, 0, 0, 0])
 
     def test_a_fleet_that_was_started_together_goes_on(self):
-        fleet = self.start("live", *self.words("--speed"), *self.world("--speed"))
-        self.until(lambda: len(self.members()) == 6, "all are there")
-        self.until(lambda: "agent 2" not in self.trouble_of(fleet), "")
-        victim = self.child(2)
-        self.until(lambda: self.threads(victim) > 3, "it takes part")
-        self.wait_for_clock()
-        signal_to(victim, signal.SIGKILL)
+        fleet = self.start("live", *self.words("--speed"), *self.world("--speed"), terminal=True)
+        self.until(lambda: fleet.now_s() > 0, "the run begins")
+        os.kill(self.child(2), signal.SIGKILL)
         self.ends(fleet)
         self.assertEqual([who for _, who in self.came("silent")], [2])
+        for line in ["estimator2   killed by signal 9", "estimator3   done", "world        done"]:
+            self.assertIn(line, fleet.text())
 
 
 class TheWorldIsKilled(LiveBed):
@@ -124,16 +122,19 @@ class TheWorldIsKilled(LiveBed):
     def test_before_it_began_agents_end(self):
         world, (agent,) = self.world_and_agents("ring.toml", agents=1)
         self.until(lambda: len(self.members()) == 2, "both are there")
-        agents_patience = self.start("agent", "ring.toml", "--id", 1, "--patience", 0.3, fleet=self.fleet + "-empty")
-        self.ends(agents_patience, 1)
-        self.assertIn("answered within 0.3 s", agents_patience.trouble())
         world.kill()
         self.ends(agent, 1)
+
+    def test_where_there_is_none_agents_do_not_wait_for_ever(self):
+        agent = self.start("agent", "ring.toml", "--id", 1, "--patience", 0.3)
+        self.ends(agent, 1)
+        self.assertEqual(agent.trouble(),
+                         f"hearsay agent 1: no world of fleet '{self.fleet}' answered within 0.3 s\n")
 
     def test_a_fleet_that_was_started_together_fails(self):
         fleet = self.start("live", "ring.toml", "--set", "duration_s=100000", "--lockstep", "--out", "live.db")
         self.until(lambda: len(self.members()) == 6, "all are there")
-        signal_to(self.world_of_live(), signal.SIGKILL)
+        os.kill(self.world_of_live(), signal.SIGKILL)
         self.ends(fleet, 1)
         self.assertEqual(self.members(), {})
 

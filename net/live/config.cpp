@@ -45,7 +45,8 @@ std::string cyclone_config(std::uint32_t domain, const std::string& interface) {
   xml += "</MaxAutoParticipantIndex><LeaseDuration>5s</LeaseDuration>";
   if (loopback) xml += loopback_peers;
   xml += "</Discovery><Internal><MaxSampleSize>" + std::to_string(sample_bytes_max) +
-         "B</MaxSampleSize><Watermarks><WhcHigh>8MB</WhcHigh></Watermarks>"
+         "B</MaxSampleSize><Watermarks><WhcHigh>8MB</WhcHigh><WhcHighInit>8MB</WhcHighInit></"
+         "Watermarks>"
          "<SocketReceiveBufferSize min=\"default\" max=\"4MB\"/></Internal>"
          "</Domain></CycloneDDS>";
   return xml;

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <exception>
 
+#include "net/live/port.hpp"
 #include "tools/hearsay/one_run.hpp"
 #include "tools/hearsay/run_output.hpp"
 #include "tools/hearsay/verbs.hpp"
@@ -122,11 +123,15 @@ int live_fleet(const LiveVerb& verb, const Catalog& catalog) {
   const auto prepared = prepared_of(scenario, catalog);
   require_can_live_elsewhere(*prepared, catalog);
   if (!verb.out.empty()) probe_output(verb.out);
-  std::vector<std::string> common = {
-      verb.scenario, "--status",
-      "--fleet",     verb.fleet.empty() ? fmt::format("hearsay-{}", getpid()) : verb.fleet,
-      "--domain",    std::to_string(verb.domain),
-      "--radio",     verb.radio};
+  fleet::FleetOptions options = fleet_of(verb);
+  if (options.fleet.empty()) options.fleet = fmt::format("hearsay-{}", getpid());
+  {
+    const live::Port probe(
+        {.fleet = options.fleet, .interface = options.interface, .domain = options.domain});
+  }
+  std::vector<std::string> common = {verb.scenario, "--status", "--fleet",
+                                     options.fleet, "--domain", std::to_string(verb.domain),
+                                     "--radio",     verb.radio};
   if (!verb.interface.empty()) common.insert(common.end(), {"--interface", verb.interface});
   for (const std::string& set : verb.set) common.insert(common.end(), {"--set", set});
   std::vector<fleet::ChildSpec> children(1 + prepared->specs.size());

@@ -78,7 +78,6 @@ void LockstepWorld::switch_off(Run& run) {
 void LockstepWorld::let_join(Run& run) {
   for (const AgentId id : roster_.update(run.simulation().now().nanoseconds())) {
     const auto i = static_cast<std::size_t>(id);
-    if (!agents_[i]->silent()) continue;
     off_[i] = false;
     run.set_reachable(id, true);
     Simulation& simulation = run.simulation();

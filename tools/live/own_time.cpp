@@ -69,7 +69,7 @@ std::string OwnTime::serve(const Catalog& catalog, live::Reader& orders,
       take_packets();
       if (solo_->simulation().failed()) return failure();
     }
-    if (orders.writers_alive() == 0) {
+    if (presence_.gone(orders.writers_alive() > 0)) {
       return fmt::format("the world of fleet '{}' is gone", options_.fleet.fleet);
     }
     if (WallClock::now() >= next_status) {

@@ -16,6 +16,7 @@
 #include "scenarios/solo.hpp"
 #include "tools/live/air.hpp"
 #include "tools/live/options.hpp"
+#include "tools/live/presence.hpp"
 #include "tools/live/reactor.hpp"
 
 namespace hearsay::fleet {
@@ -69,6 +70,7 @@ class OwnTime final : private RadioPort, private EstimatorWitness, private Recor
   const AgentOptions& options_;
   live::Welcome welcome_;
   Reactor& reactor_;
+  Presence presence_;  // of the world
   Tongue tongue_;
   AirOut air_out_;
   AirIn air_in_;

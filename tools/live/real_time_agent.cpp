@@ -12,6 +12,8 @@ using remote::OrderKind;
 
 /// How long the world stands still for what an agent believes, or leaves at the end.
 constexpr double report_wait_s = 0.05, last_wait_s = 2.0;
+/// What a radio takes.
+constexpr std::int64_t ticks_max = std::int64_t{1} << 48;
 
 }  // namespace
 
@@ -99,8 +101,7 @@ bool RealTimeAgent::take() {
   while (air_in_.take(parcel_)) {
     any = true;
     const live::Envelope& envelope = parcel_.envelope;
-    if (envelope.sender != static_cast<std::uint32_t>(context().id()) ||
-        envelope.number <= heard_) {
+    if (!can_be_sent(envelope) || envelope.number <= heard_) {
       ++dropped_;
       continue;
     }
@@ -108,6 +109,14 @@ bool RealTimeAgent::take() {
     say(parcel_);
   }
   return any;
+}
+
+bool RealTimeAgent::can_be_sent(const live::Envelope& envelope) const {
+  const auto me = static_cast<std::uint32_t>(context().id());
+  const bool somebody =
+      envelope.receiver < static_cast<std::uint32_t>(options_.agents) && envelope.receiver != me;
+  return envelope.sender == me && (somebody || envelope.receiver == live::everybody) &&
+         envelope.tick < ticks_max;
 }
 
 void RealTimeAgent::say(const Parcel& parcel) {

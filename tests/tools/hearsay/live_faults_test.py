@@ -8,7 +8,7 @@ from live_bed import LiveBed
 # Nothing is lost, so that what is not heard was not said; who is outdated is refused.
 CALM = ["--set", "radio.loss.probability=0.0", "--set", 'agents.estimator.fusion="channel-robust"',
         "--set", "record.messages=all"]
-DURATION_S = {"--lockstep": 1500.0, "--speed": 80.0}
+DURATION_S = {"--lockstep": 1200.0, "--speed": 80.0}
 
 
 class AnAgentIsKilled(LiveBed):
@@ -16,7 +16,7 @@ class AnAgentIsKilled(LiveBed):
         return ["ring.toml", *CALM, "--set", f"duration_s={DURATION_S[mode]}"]
 
     def world(self, mode):
-        pace = ["--lockstep"] if mode == "--lockstep" else ["--speed", 10]
+        pace = ["--lockstep"] if mode == "--lockstep" else ["--speed", 20]
         return [*pace, "--out", "live.db"]
 
     def came(self, kind):
@@ -28,8 +28,8 @@ class AnAgentIsKilled(LiveBed):
             "live.db", "SELECT receiver FROM message WHERE sender = ? AND sent_s > ? AND fate = 'delivered'",
             sender, since_s)}
 
-    def expect_that_others_go_on(self, mode, radio=()):
-        words = [*self.words(mode), *radio]
+    def test_in_lockstep_the_others_go_on(self):
+        words, mode = self.words("--lockstep"), "--lockstep"
         world, agents = self.world_and_agents(*words, world=self.world(mode))
         self.until(lambda: world.now_s() > 0, "the run begins")
         agents[1].kill()
@@ -41,7 +41,9 @@ class AnAgentIsKilled(LiveBed):
         self.assertEqual(who, 1)
         self.assertTrue(0 < silent_s < DURATION_S[mode], silent_s)
         self.assertEqual(self.came("joined again"), [])
-        return silent_s
+        self.assertEqual(self.delivered(1, silent_s), set())
+        self.assertEqual(self.delivered(2, silent_s), {3})
+        self.assertEqual(self.delivered(3, silent_s), {0, 2})
 
     def expect_to_join_again(self, mode, radio=()):
         words = [*self.words(mode), *radio]
@@ -70,23 +72,27 @@ class AnAgentIsKilled(LiveBed):
         self.assertEqual(self.delivered(0, joined_s), {1, 3})
         self.assertEqual([self.value("live.db", agent, "messages_refused") for agent in range(4)], [0, 0, 0, 0])
 
-    def test_in_lockstep_the_others_go_on(self):
-        silent_s = self.expect_that_others_go_on("--lockstep")
-        self.assertEqual(self.delivered(1, silent_s), set())
-        self.assertEqual(self.delivered(2, silent_s), {3})
-        self.assertEqual(self.delivered(3, silent_s), {0, 2})
-
-    def test_in_real_time_the_others_go_on(self):
-        silent_s = self.expect_that_others_go_on("--speed")
-        self.assertEqual(self.delivered(1, silent_s), set())
-        self.assertEqual(self.delivered(3, silent_s), {0, 2})
-
     def test_in_lockstep_another_process_takes_its_place(self):
         self.expect_to_be_heard(self.expect_to_join_again("--lockstep"))
 
     def test_in_real_time_another_process_takes_its_place(self):
         self.expect_to_be_heard(self.expect_to_join_again("--speed"))
         self.assertGreater(self.value("live.db", 1, "measurements"), 0)
+
+    def test_in_lockstep_a_process_that_was_taken_for_gone_begins_anew(self):
+        words = self.words("--lockstep")
+        world, agents = self.world_and_agents(*words, world=self.world("--lockstep"))
+        self.until(lambda: world.now_s() > 0, "the run begins")
+        agents[1].kill(signal.SIGSTOP)
+        then_s = world.now_s()
+        self.until(lambda: world.now_s() > then_s, "the world goes on without it")
+        agents[1].kill(signal.SIGCONT)
+        self.ends(world)
+        for agent in agents:
+            self.ends(agent)
+        ((_, silent),), ((joined_s, joined),) = self.came("silent"), self.came("joined again")
+        self.assertEqual((silent, joined), (1, 1))
+        self.expect_to_be_heard(joined_s)
 
     def test_without_the_worlds_radio_another_process_is_heard_as_well(self):
         self.expect_to_join_again("--speed", ["--radio", "direct"])
@@ -97,7 +103,11 @@ class AnAgentIsKilled(LiveBed):
         self.until(lambda: fleet.now_s() > 0, "the run begins")
         os.kill(self.child(2), signal.SIGKILL)
         self.ends(fleet)
-        self.assertEqual([who for _, who in self.came("silent")], [2])
+        ((silent_s, who),) = self.came("silent")
+        self.assertEqual(who, 2)
+        self.assertTrue(0 < silent_s < DURATION_S["--speed"], silent_s)
+        self.assertEqual(self.delivered(2, silent_s), set())
+        self.assertEqual(self.delivered(0, silent_s), {1, 3})
         for line in ["estimator2   killed by signal 9", "estimator3   done", "world        done"]:
             self.assertIn(line, fleet.text())
 
@@ -120,8 +130,9 @@ class TheWorldIsKilled(LiveBed):
         self.expect_agents_to_say_so("--speed", 10)
 
     def test_before_it_began_agents_end(self):
-        world, (agent,) = self.world_and_agents("ring.toml", agents=1)
-        self.until(lambda: len(self.members()) == 2, "both are there")
+        world = self.start("world", "ring.toml")
+        agent = self.start("agent", "ring.toml", "--id", 0, "--status")
+        self.until(lambda: "waits for the others" in agent.text(), "it was welcome")
         world.kill()
         self.ends(agent, 1)
 

@@ -80,7 +80,8 @@ class RealTime(LiveBed):
         self.assertGreater(self.value("live.db", 1, "packets_delivered"), 3)
 
     def test_agents_hear_each_other_without_the_worlds_radio(self):
-        self.expect_life("--radio", "direct")
+        # Whoever is no neighbour in the scenario is heard all the same, and refused.
+        self.expect_life("--radio", "direct", "--set", 'radio.topology="full"')
         for agent in range(4):
             self.assertEqual(self.value("live.db", agent, "packets_delivered"), 0)
 

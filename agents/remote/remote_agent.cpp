@@ -96,8 +96,7 @@ void RemoteAgent::wake(std::uint64_t event) {
 }
 
 void RemoteAgent::join() {
-  for (const auto& [event, id] : plans_) context().simulation().cancel(id);
-  plans_.clear();
+  fall_silent();
   std::fill(told_measurements_.begin(), told_measurements_.end(), 0);
   silent_ = false;
   if (begun_) start();

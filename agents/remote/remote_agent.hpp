@@ -47,8 +47,8 @@ class RemoteAgent final : public StandIn {
 
   /// Its process is gone; nothing is asked of it until join(). What it believes nobody knows.
   bool silent() const { return silent_; }
-  /// Another process has taken its place: it begins now, as one that lost its memory. (One that
-  /// remembers says so itself.)
+  /// Another process has taken its place, whether or not it was seen to fall silent: it begins now,
+  /// as one that lost its memory. (One that remembers says so itself.)
   void join();
 
  private:

@@ -29,10 +29,10 @@ RemoteWorld::RemoteWorld(Superior& superior, const Order& first, const Options& 
 
 bool RemoteWorld::serve(const Parts& parts) {
   parts_ = &parts;
-  for (;;) {
+  for (bool begun = false;; begun = true) {
     std::exception_ptr error;
     try {
-      obey();
+      begun ? obey() : begin();
     } catch (...) {
       error = std::current_exception();
     }
@@ -63,8 +63,6 @@ void RemoteWorld::obey() {
   }
   simulation.advance(order_.now);
   switch (order_.kind) {
-    case OrderKind::start:
-      return begin();
     case OrderKind::measurement:
       require(receiver, "a measurement for an agent without sensors");
       return receiver->on_measurement(order_.measurement);
@@ -82,6 +80,7 @@ void RemoteWorld::obey() {
       return report();
     case OrderKind::finish:
       return agent.finish();
+    case OrderKind::start:
     case OrderKind::wake:
     case OrderKind::go_on:
     case OrderKind::dismiss:
@@ -92,6 +91,7 @@ void RemoteWorld::obey() {
 
 // Whoever began before in this run has lost its memory, unless it was kept, and others know it.
 void RemoteWorld::begin() {
+  parts_->simulation.advance(order_.now);
   parts_->agent.start();
   if (options_.memory && options_.memory->recall(parts_->agent)) return;
   for (std::uint32_t life = 0; life < order_.lives; ++life) parts_->agent.on_up(true);
@@ -123,9 +123,10 @@ bool RemoteWorld::answer(AnswerKind kind) {
   answer_.kind = kind;
   const bool goes_on = superior_.exchange(answer_, order_);
   answer_ = {};
-  if (goes_on) look_around();
-  gone_ = !goes_on;
-  return goes_on;
+  anew_ = goes_on && order_.kind == OrderKind::start;
+  gone_ = !goes_on || anew_;
+  if (!gone_) look_around();
+  return !gone_;
 }
 
 void RemoteWorld::call(AnswerKind kind) {

@@ -53,8 +53,11 @@ class RemoteWorld final : public RadioPort,
     Agent& agent;
     MeasurementReceiver* receiver = nullptr;  ///< null: it has no sensors
   };
-  /// Obeys until it is dismissed. @return false if the world went away before.
+  /// Obeys until it is dismissed. @return false if the world went away before, or took it for gone
+  /// and lets it begin anew.
   bool serve(const Parts& parts);
+  /// The order to start once more: this life is over, the agent needs another world.
+  const Order* next_life() const { return anew_ ? &order_ : nullptr; }
 
   bool send(AgentId sender, const Outgoing& packet) override;
   void tell_of_empty_queue(AgentId agent) override;
@@ -70,7 +73,7 @@ class RemoteWorld final : public RadioPort,
   EstimatorWorkspace& workspace() override { return workspace_; }
 
  private:
-  /// Thrown through the agent's code when its world is gone.
+  /// Thrown through the agent's code when its world is gone, or wants to hear no more of this life.
   struct WorldGone {};
 
   void on_scalar(const ScalarRow& row, Origin origin) override;
@@ -100,6 +103,7 @@ class RemoteWorld final : public RadioPort,
   EstimatorWorkspace workspace_;
   RiderPtr rider_;  // of the packet that is being heard
   bool gone_ = false;
+  bool anew_ = false;
 };
 
 }  // namespace hearsay::remote

@@ -48,7 +48,7 @@ std::string cyclone_config(std::uint32_t domain, const std::string& interface) {
          "B</MaxSampleSize><WriteBatch>true</WriteBatch>";
   // What is on its way to a reader should fit into the buffer of its socket.
   xml +=
-      "<Watermarks><WhcHigh>2MB</WhcHigh></Watermarks>"
+      "<Watermarks><WhcHigh>2MB</WhcHigh><WhcHighInit>2MB</WhcHighInit></Watermarks>"
       "<SocketReceiveBufferSize min=\"default\" max=\"4MB\"/></Internal></Domain></CycloneDDS>";
   return xml;
 }

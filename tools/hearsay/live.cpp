@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <exception>
 
+#include "net/live/port.hpp"
 #include "tools/hearsay/one_run.hpp"
 #include "tools/hearsay/run_output.hpp"
 #include "tools/hearsay/verbs.hpp"
@@ -14,6 +15,12 @@
 
 namespace hearsay::program {
 namespace {
+
+/// What agents tell each other past the world, no world can put in order.
+void require_radio_fits(const LiveVerb& verb) {
+  if (!verb.lockstep || verb.radio != "direct") return;
+  throw InputError("--radio direct: not with --lockstep, which needs the world's radio");
+}
 
 Scenario scenario_of(const LiveVerb& verb, const Catalog& catalog) {
   std::vector<Override> overrides;
@@ -68,6 +75,7 @@ void print_timing(const fleet::WorldResult& result, const LiveVerb& verb) {
 }  // namespace
 
 int live_world(const LiveVerb& verb, const Catalog& catalog) {
+  require_radio_fits(verb);
   const Scenario as_given = scenario_of(verb, catalog);
   const Scenario scenario = as_it_is_lived(as_given, verb);
   const auto prepared = prepared_of(scenario, catalog);
@@ -116,16 +124,21 @@ int live_agent(const LiveVerb& verb, const Catalog& catalog) {
 }
 
 int live_fleet(const LiveVerb& verb, const Catalog& catalog) {
+  require_radio_fits(verb);
   // Told here, once, and not by each process.
   const Scenario scenario = scenario_of(verb, catalog);
   const auto prepared = prepared_of(scenario, catalog);
   require_can_live_elsewhere(*prepared, catalog);
   if (!verb.out.empty()) probe_output(verb.out);
-  std::vector<std::string> common = {
-      verb.scenario, "--status",
-      "--fleet",     verb.fleet.empty() ? fmt::format("hearsay-{}", getpid()) : verb.fleet,
-      "--domain",    std::to_string(verb.domain),
-      "--radio",     verb.radio};
+  fleet::FleetOptions options = fleet_of(verb);
+  if (options.fleet.empty()) options.fleet = fmt::format("hearsay-{}", getpid());
+  {
+    const live::Port probe(
+        {.fleet = options.fleet, .interface = options.interface, .domain = options.domain});
+  }
+  std::vector<std::string> common = {verb.scenario, "--status", "--fleet",
+                                     options.fleet, "--domain", std::to_string(verb.domain),
+                                     "--radio",     verb.radio};
   if (!verb.interface.empty()) common.insert(common.end(), {"--interface", verb.interface});
   for (const std::string& set : verb.set) common.insert(common.end(), {"--set", set});
   std::vector<fleet::ChildSpec> children(1 + prepared->specs.size());

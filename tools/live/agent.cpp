@@ -63,18 +63,22 @@ std::string in_lockstep(const std::shared_ptr<const PreparedScenario>& prepared,
   if (!superior.wait(first)) return reactor.stopped() ? "" : gone;
   if (first.kind == remote::OrderKind::dismiss) return {};
   const int subjects = remote_options(*prepared, options.id).subjects;
-  remote::RemoteWorld world(superior, first,
-                            {.ledgers = prepared->scenario.record.ledger == "on",
-                             .subjects = subjects,
-                             .memory = memory});
-  Solo solo(prepared, catalog, world, world,
-            {.id = options.id,
-             .seed = welcome.seed,
-             .now = first.now,
-             .tap = &world.tap(),
-             .plans = &world.plans()});
-  const bool dismissed = world.serve({solo.simulation(), solo.agent(), solo.receiver()});
-  return dismissed || reactor.stopped() ? "" : gone;
+  for (;;) {
+    remote::RemoteWorld world(superior, first,
+                              {.ledgers = prepared->scenario.record.ledger == "on",
+                               .subjects = subjects,
+                               .memory = memory});
+    Solo solo(prepared, catalog, world, world,
+              {.id = options.id,
+               .seed = welcome.seed,
+               .now = first.now,
+               .tap = &world.tap(),
+               .plans = &world.plans()});
+    if (world.serve({solo.simulation(), solo.agent(), solo.receiver()})) return {};
+    // The world took this process for gone, and has it join again.
+    if (!world.next_life()) return reactor.stopped() ? "" : gone;
+    first = *world.next_life();
+  }
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "filters/gaussian/message_forms.hpp"
 #include "filters/gaussian/trajectory_codec.hpp"
+#include "filters/gaussian/trajectory_factor.hpp"
 #include "scenarios/estimators.hpp"
 
 namespace hearsay::fleet {
@@ -37,12 +38,32 @@ bool is_sound(MessageForm form, bool moving, std::span<const std::byte> bytes) {
                               : gaussian::decode(form, bytes, message.message, extras);
   if (!decoded) return false;
   const auto sound = [](const Belief& belief) { return is_sound(belief); };
-  // A split belief's fresh part is a matrix alone.
-  const auto finite = [](const Belief& belief) { return belief.omega.allFinite(); };
+  // Rounding may leave a part that is hardly anything a little indefinite.
+  const auto finite = [](const Belief& belief) {
+    return belief.xi.allFinite() && belief.omega.allFinite();
+  };
   const auto& beliefs = message.message.beliefs;
   return std::all_of(beliefs.begin(), beliefs.end(),
                      [&](const gaussian::BeliefEntry& entry) { return sound(entry.belief); }) &&
          std::all_of(extras.fresh.begin(), extras.fresh.end(), finite);
+}
+
+/// Of a whole trajectory, of which each step tells how it hangs together with the next, all blocks
+/// as one matrix count.
+bool is_sound_chain(const gaussian::TrajectoryEntry& entry) {
+  const int n = entry.steps.front().information.dimension();
+  gaussian::Trajectory trajectory(n, entry.steps.front().stamp);
+  trajectory.update(0, entry.steps.front().information);
+  for (std::size_t k = 1; k < entry.steps.size(); ++k) {
+    const gaussian::TrajectoryStep& before = entry.steps[k - 1];
+    const gaussian::TrajectoryStep& step = entry.steps[k];
+    if (step.information.dimension() != n || before.next.rows() != n) return false;
+    if (step.stamp <= before.stamp) return false;
+    trajectory.append(step.stamp, before.next, step.information);
+  }
+  if (entry.steps.back().next.size() != 0) return false;
+  const Definiteness kind = gaussian::TrajectoryFactor().factor(trajectory);
+  return kind == Definiteness::positive || kind == Definiteness::singular;
 }
 
 bool is_sound_trajectory(std::span<const std::byte> bytes) {
@@ -52,6 +73,9 @@ bool is_sound_trajectory(std::span<const std::byte> bytes) {
     for (const gaussian::TrajectoryStep& step : entry.steps) {
       if (!is_sound(step.information) || !step.next.allFinite()) return false;
     }
+    const bool chained = std::any_of(entry.steps.begin(), entry.steps.end(),
+                                     [](const auto& step) { return step.next.size() != 0; });
+    if (chained && !is_sound_chain(entry)) return false;
   }
   return true;
 }

@@ -21,7 +21,12 @@ bool FrameLine::write(const remote::Order& order) {
   ++out_.number;
   remote::pack(order, out_.content);
   live::encode(out_, bytes_);
-  return member_.orders.write(bytes_);
+  // Where a process was killed, DDS waits a while for it, though another has taken its place.
+  while (!member_.orders.write(bytes_)) {
+    reactor_.wait(WallClock::now());
+    if (reactor_.stopped() || presence_.gone(member_.answers.writers_alive() > 0)) return false;
+  }
+  return true;
 }
 
 bool FrameLine::exchange(const remote::Order& order, remote::Answer& answer) {
@@ -32,7 +37,7 @@ bool FrameLine::exchange(const remote::Order& order, remote::Answer& answer) {
       if (!live::decode(bytes_, in_) || in_.number != out_.number) continue;
       return remote::unpack(in_.content, answer);
     }
-    if (reactor_.stopped() || member_.answers.writers_alive() == 0) return false;
+    if (reactor_.stopped() || presence_.gone(member_.answers.writers_alive() > 0)) return false;
     reactor_.wait(WallClock::now() + patience);
   }
 }
@@ -51,7 +56,7 @@ bool FrameSuperior::wait(remote::Order& order) {
       if (progress_) progress_(order);
       return true;
     }
-    if (reactor_.stopped() || orders_.writers_alive() == 0) return false;
+    if (reactor_.stopped() || presence_.gone(orders_.writers_alive() > 0)) return false;
     reactor_.wait(WallClock::now() + patience);
   }
 }

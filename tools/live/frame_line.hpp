@@ -8,6 +8,7 @@
 #include "agents/remote/remote_agent.hpp"
 #include "agents/remote/remote_world.hpp"
 #include "net/live/messages.hpp"
+#include "tools/live/presence.hpp"
 #include "tools/live/reactor.hpp"
 #include "tools/live/roster.hpp"
 
@@ -27,6 +28,7 @@ class FrameLine final : public remote::Line {
 
   Member& member_;
   Reactor& reactor_;
+  Presence presence_;
   live::Frame out_, in_;
   std::vector<std::byte> bytes_;
 };
@@ -48,6 +50,7 @@ class FrameSuperior final : public remote::Superior {
   live::Writer& answers_;
   Reactor& reactor_;
   std::function<void(const remote::Order&)> progress_;
+  Presence presence_;
   live::Frame out_, in_;
   std::vector<std::byte> bytes_;
 };

@@ -36,6 +36,7 @@ RunEnd LockstepWorld::drive(Run& run, const std::function<void(const std::string
   std::uint64_t events = 0;
   EndReason reason = EndReason::time_reached;
   while (!simulation.failed() && !reactor_.stopped()) {
+    simulation.advance(simulation.now());  // whatever was the last event, it is over
     switch_off(run);
     let_join(run);
     const Time next = simulation.next_time();
@@ -77,7 +78,6 @@ void LockstepWorld::switch_off(Run& run) {
 void LockstepWorld::let_join(Run& run) {
   for (const AgentId id : roster_.update(run.simulation().now().nanoseconds())) {
     const auto i = static_cast<std::size_t>(id);
-    if (!agents_[i]->silent()) continue;
     off_[i] = false;
     run.set_reachable(id, true);
     Simulation& simulation = run.simulation();

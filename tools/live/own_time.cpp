@@ -72,7 +72,7 @@ std::string OwnTime::serve(const Catalog& catalog, live::Reader& orders,
       if (solo_->simulation().failed()) return failure();
       if (memory_) memory_->save(solo_->agent());
     }
-    if (orders.writers_alive() == 0) {
+    if (presence_.gone(orders.writers_alive() > 0)) {
       return fmt::format("the world of fleet '{}' is gone", options_.fleet.fleet);
     }
     if (WallClock::now() >= next_status) {
@@ -119,6 +119,8 @@ bool OwnTime::take_orders(const Catalog& catalog, live::Reader& orders) {
 
 void OwnTime::begin(const Catalog& catalog, const Order& order) {
   set_clock(order.now.nanoseconds());
+  // Above those of the process that had its place before.
+  number_ = std::max(number_, std::uint64_t{order.lives} << 32);
   RadioPort& radio = *this;
   EstimatorWitness& witness = *this;
   RecordTap* const tap = this;

@@ -16,6 +16,7 @@
 #include "scenarios/solo.hpp"
 #include "tools/live/air.hpp"
 #include "tools/live/options.hpp"
+#include "tools/live/presence.hpp"
 #include "tools/live/reactor.hpp"
 
 namespace hearsay::fleet {
@@ -71,6 +72,7 @@ class OwnTime final : private RadioPort, private EstimatorWitness, private Recor
   live::Welcome welcome_;
   Reactor& reactor_;
   remote::MemoryStore* memory_;  // null: it has none
+  Presence presence_;            // of the world
   Tongue tongue_;
   AirOut air_out_;
   AirIn air_in_;

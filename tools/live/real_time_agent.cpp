@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "sim/kernel/error.hpp"
+
 namespace hearsay::fleet {
 namespace {
 
@@ -12,6 +14,8 @@ using remote::OrderKind;
 
 /// How long the world stands still for what an agent believes, or leaves at the end.
 constexpr double report_wait_s = 0.05, last_wait_s = 2.0;
+/// What a radio takes.
+constexpr std::int64_t ticks_max = std::int64_t{1} << 48;
 
 }  // namespace
 
@@ -98,7 +102,8 @@ bool RealTimeAgent::take() {
   while (take_report()) any = true;
   while (air_in_.take(parcel_)) {
     any = true;
-    if (!may_say(parcel_.envelope)) {
+    const live::Envelope& envelope = parcel_.envelope;
+    if (!can_be_sent(envelope) || envelope.number <= heard_) {
       ++dropped_;
       continue;
     }
@@ -108,13 +113,11 @@ bool RealTimeAgent::take() {
   return any;
 }
 
-// A program of others may write anything; the radio takes what is wrong for a mistake of ours.
-bool RealTimeAgent::may_say(const live::Envelope& envelope) const {
-  const auto self = static_cast<std::uint32_t>(context().id());
-  const bool somebody = envelope.receiver == live::everybody ||
-                        (envelope.receiver < options_.agents && envelope.receiver != self);
-  constexpr std::int64_t ticks_max = std::int64_t{1} << 48;  // of net/radio.cpp
-  return envelope.sender == self && envelope.number > heard_ && somebody &&
+bool RealTimeAgent::can_be_sent(const live::Envelope& envelope) const {
+  const auto me = static_cast<std::uint32_t>(context().id());
+  const bool somebody =
+      envelope.receiver < static_cast<std::uint32_t>(options_.agents) && envelope.receiver != me;
+  return envelope.sender == me && (somebody || envelope.receiver == live::everybody) &&
          envelope.tick < ticks_max;
 }
 
@@ -127,7 +130,18 @@ void RealTimeAgent::say(const Parcel& parcel) {
   }
   if (parcel.envelope.tick >= 0) packet.tick = static_cast<std::uint64_t>(parcel.envelope.tick);
   packet.subject = parcel.envelope.subject;
-  context().send(packet);
+  if (member_.ours) {
+    context().send(packet);
+    return;
+  }
+  // Another's program may say more than its radio can ever take; that is not the run's fault.
+  try {
+    context().send(packet);
+  } catch (const InputError&) {
+    ++dropped_;
+  } catch (const BrokenInvariant&) {
+    ++dropped_;
+  }
 }
 
 bool RealTimeAgent::take_report() {

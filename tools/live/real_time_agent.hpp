@@ -17,7 +17,7 @@ class RealTimeAgent final : public remote::StandIn {
     remote::RemoteAgent::Options what;
     Tongue tongue;                ///< what it says
     std::vector<Tongue> tongues;  ///< what it hears
-    std::uint32_t agents = 0;     ///< in the scenario
+    int agents = 0;               ///< in the fleet
   };
   /// All outlive this.
   RealTimeAgent(Context& context, live::Port& port, Member& member, Reactor& reactor,
@@ -38,6 +38,8 @@ class RealTimeAgent final : public remote::StandIn {
   /// Its process shows no sign of life any more. (Another may start() in its place.)
   void fall_silent();
   bool silent() const { return silent_; }
+  /// Whether it has shown no sign of life for a while.
+  bool gone() { return presence_.gone(member_.alive()); }
   /// Tells it who hears it now, if that has changed.
   void tell_neighbours();
   void dismiss() { tell({.kind = remote::OrderKind::dismiss, .now = context().now()}); }
@@ -46,7 +48,7 @@ class RealTimeAgent final : public remote::StandIn {
   std::uint64_t late_reports() const { return late_reports_; }
   /// Deadlines that it missed, as it says.
   std::uint64_t missed() const { return missed_; }
-  /// Packets of it that were no sound beliefs, of or to nobody whom the scenario has, or old.
+  /// Packets of it that were no sound beliefs, of or for somebody who is not there, or old.
   std::uint64_t dropped() const { return dropped_ + air_in_.dropped(); }
 
  private:
@@ -63,7 +65,7 @@ class RealTimeAgent final : public remote::StandIn {
 
   remote::Order order(remote::OrderKind kind);
   void tell(const remote::Order& order);
-  bool may_say(const live::Envelope& envelope) const;
+  bool can_be_sent(const live::Envelope& envelope) const;
   void say(const Parcel& parcel);
   bool take_report();
   void record(const live::Row& row);
@@ -71,6 +73,7 @@ class RealTimeAgent final : public remote::StandIn {
   void ask(remote::OrderKind kind, double wait_s);
 
   Member& member_;
+  Presence presence_;
   Reactor& reactor_;
   Options options_;
   Beliefs believer_;

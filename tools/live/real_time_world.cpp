@@ -36,7 +36,7 @@ std::unique_ptr<remote::StandIn> RealTimeWorld::stand_in(Context& context, Estim
                                       RealTimeAgent::Options{.what = remote_options(prepared_, id),
                                                              .tongue = tongue_of(prepared_, id),
                                                              .tongues = tongues_of(prepared_),
-                                                             .agents = agents});
+                                                             .agents = roster_.size()});
   agents_[static_cast<std::size_t>(id)] = agent.get();
   return agent;
 }
@@ -107,13 +107,14 @@ void RealTimeWorld::look_after(Run& run) {
     const auto id = static_cast<AgentId>(i);
     RealTimeAgent& agent = *agents_[i];
     const bool new_here = std::find(arrived.begin(), arrived.end(), id) != arrived.end();
-    if (!agent.silent() && !new_here && !roster_.member(id).alive()) {
+    const bool gone = agent.gone();
+    if (!agent.silent() && (new_here || gone)) {
       agent.fall_silent();
       run.set_reachable(id, false);
-    } else if (new_here) {
-      simulation.record().event(
-          simulation.now(), id, "joined again",
-          roster_.member(id).remembers ? "with its memory" : "without memory");
+    }
+    if (new_here) {
+      roster_.member(id).here = true;
+      simulation.record().event(simulation.now(), id, "joined again", "another process");
       run.set_reachable(id, true);
       agent.start();
     }

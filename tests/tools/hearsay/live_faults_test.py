@@ -1,0 +1,154 @@
+"""Processes of a fleet that are killed, and that come back."""
+import os
+import signal
+import unittest
+
+from live_bed import LiveBed
+
+# Nothing is lost, so that what is not heard was not said; who is outdated is refused.
+CALM = ["--set", "radio.loss.probability=0.0", "--set", 'agents.estimator.fusion="channel-robust"',
+        "--set", "record.messages=all"]
+DURATION_S = {"--lockstep": 1200.0, "--speed": 80.0}
+
+
+class AnAgentIsKilled(LiveBed):
+    def words(self, mode):
+        return ["ring.toml", *CALM, "--set", f"duration_s={DURATION_S[mode]}"]
+
+    def world(self, mode):
+        pace = ["--lockstep"] if mode == "--lockstep" else ["--speed", 20]
+        return [*pace, "--out", "live.db"]
+
+    def came(self, kind):
+        return self.rows("live.db", "SELECT t_s, agent FROM event WHERE kind = ? ORDER BY t_s", kind)
+
+    def delivered(self, sender, since_s):
+        """@return who got packets that were sent after this."""
+        return {receiver for (receiver,) in self.rows(
+            "live.db", "SELECT receiver FROM message WHERE sender = ? AND sent_s > ? AND fate = 'delivered'",
+            sender, since_s)}
+
+    def test_in_lockstep_the_others_go_on(self):
+        words, mode = self.words("--lockstep"), "--lockstep"
+        world, agents = self.world_and_agents(*words, world=self.world(mode))
+        self.until(lambda: world.now_s() > 0, "the run begins")
+        agents[1].kill()
+        self.ends(world)
+        self.ends(agents[1], -signal.SIGKILL)
+        for other in [0, 2, 3]:
+            self.ends(agents[other])
+        ((silent_s, who),) = self.came("silent")
+        self.assertEqual(who, 1)
+        self.assertTrue(0 < silent_s < DURATION_S[mode], silent_s)
+        self.assertEqual(self.came("joined again"), [])
+        self.assertEqual(self.delivered(1, silent_s), set())
+        self.assertEqual(self.delivered(2, silent_s), {3})
+        self.assertEqual(self.delivered(3, silent_s), {0, 2})
+
+    def expect_to_join_again(self, mode, radio=()):
+        words = [*self.words(mode), *radio]
+        world, agents = self.world_and_agents(*words, world=self.world(mode))
+        self.until(lambda: world.now_s() > 0, "the run begins")
+        agents[1].kill()
+        self.ends(agents[1], -signal.SIGKILL)
+        agents[1] = self.start("agent", *words, "--id", 1)
+        # A world may not have seen yet that the one before is gone.
+        tries = 1
+        while agents[1].wait() != 0 and tries < 20:
+            self.assertIn("agent 1 is there already", agents[1].trouble())
+            agents[1] = self.start("agent", *words, "--id", 1)
+            tries += 1
+        self.ends(world)
+        for agent in agents:
+            self.ends(agent)
+        ((silent_s, silent),), ((joined_s, joined),) = self.came("silent"), self.came("joined again")
+        self.assertEqual((silent, joined), (1, 1))
+        self.assertLessEqual(silent_s, joined_s)
+        return joined_s
+
+    def expect_to_be_heard(self, joined_s):
+        """What it says counts again: delivered, and not taken for what it said in its life before."""
+        self.assertEqual(self.delivered(1, joined_s), {0, 2})
+        self.assertEqual(self.delivered(0, joined_s), {1, 3})
+        self.assertEqual([self.value("live.db", agent, "messages_refused") for agent in range(4)], [0, 0, 0, 0])
+
+    def test_in_lockstep_another_process_takes_its_place(self):
+        self.expect_to_be_heard(self.expect_to_join_again("--lockstep"))
+
+    def test_in_real_time_another_process_takes_its_place(self):
+        self.expect_to_be_heard(self.expect_to_join_again("--speed"))
+        self.assertGreater(self.value("live.db", 1, "measurements"), 0)
+
+    def test_in_lockstep_a_process_that_was_taken_for_gone_begins_anew(self):
+        words = self.words("--lockstep")
+        world, agents = self.world_and_agents(*words, world=self.world("--lockstep"))
+        self.until(lambda: world.now_s() > 0, "the run begins")
+        agents[1].kill(signal.SIGSTOP)
+        then_s = world.now_s()
+        self.until(lambda: world.now_s() > then_s, "the world goes on without it")
+        agents[1].kill(signal.SIGCONT)
+        self.ends(world)
+        for agent in agents:
+            self.ends(agent)
+        ((_, silent),), ((joined_s, joined),) = self.came("silent"), self.came("joined again")
+        self.assertEqual((silent, joined), (1, 1))
+        self.expect_to_be_heard(joined_s)
+
+    def test_without_the_worlds_radio_another_process_is_heard_as_well(self):
+        self.expect_to_join_again("--speed", ["--radio", "direct"])
+        self.assertEqual([self.value("live.db", agent, "messages_refused") for agent in range(4)], [0, 0, 0, 0])
+
+    def test_a_fleet_that_was_started_together_goes_on(self):
+        fleet = self.start("live", *self.words("--speed"), *self.world("--speed"), terminal=True)
+        self.until(lambda: fleet.now_s() > 0, "the run begins")
+        os.kill(self.child(2), signal.SIGKILL)
+        self.ends(fleet)
+        ((silent_s, who),) = self.came("silent")
+        self.assertEqual(who, 2)
+        self.assertTrue(0 < silent_s < DURATION_S["--speed"], silent_s)
+        self.assertEqual(self.delivered(2, silent_s), set())
+        self.assertEqual(self.delivered(0, silent_s), {1, 3})
+        for line in ["estimator2   killed by signal 9", "estimator3   done", "world        done"]:
+            self.assertIn(line, fleet.text())
+
+
+class TheWorldIsKilled(LiveBed):
+    def expect_agents_to_say_so(self, *pace):
+        words = ["ring.toml", "--set", "duration_s=100000"]
+        world, agents = self.world_and_agents(*words, world=pace)
+        self.until(lambda: world.now_s() > 0, "the run begins")
+        world.kill()
+        for i, agent in enumerate(agents):
+            self.ends(agent, 1)
+            self.assertEqual(agent.trouble(), f"hearsay agent {i}: the world of fleet '{self.fleet}' is gone\n")
+            self.assertEqual(agent.text(), "")
+
+    def test_in_lockstep_agents_end(self):
+        self.expect_agents_to_say_so("--lockstep")
+
+    def test_in_real_time_agents_end(self):
+        self.expect_agents_to_say_so("--speed", 10)
+
+    def test_before_it_began_agents_end(self):
+        world = self.start("world", "ring.toml")
+        agent = self.start("agent", "ring.toml", "--id", 0, "--status")
+        self.until(lambda: "waits for the others" in agent.text(), "it was welcome")
+        world.kill()
+        self.ends(agent, 1)
+
+    def test_where_there_is_none_agents_do_not_wait_for_ever(self):
+        agent = self.start("agent", "ring.toml", "--id", 1, "--patience", 0.3)
+        self.ends(agent, 1)
+        self.assertEqual(agent.trouble(),
+                         f"hearsay agent 1: no world of fleet '{self.fleet}' answered within 0.3 s\n")
+
+    def test_a_fleet_that_was_started_together_fails(self):
+        fleet = self.start("live", "ring.toml", "--set", "duration_s=100000", "--lockstep", "--out", "live.db")
+        self.until(lambda: len(self.members()) == 6, "all are there")
+        os.kill(self.world_of_live(), signal.SIGKILL)
+        self.ends(fleet, 1)
+        self.assertEqual(self.members(), {})
+
+
+if __name__ == "__main__":
+    unittest.main()

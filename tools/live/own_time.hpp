@@ -72,7 +72,7 @@ class OwnTime final : private RadioPort, private EstimatorWitness, private Recor
   live::Welcome welcome_;
   Reactor& reactor_;
   remote::MemoryStore* memory_;  // null: it has none
-  Presence presence_;            // of the world
+  Presence presence_{world_grace_s};  // of the world
   Tongue tongue_;
   AirOut air_out_;
   AirIn air_in_;

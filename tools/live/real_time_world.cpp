@@ -30,7 +30,6 @@ RealTimeWorld::RealTimeWorld(const PreparedScenario& prepared, live::Port& port,
 
 std::unique_ptr<remote::StandIn> RealTimeWorld::stand_in(Context& context, EstimatorWitness*) {
   const AgentId id = context.id();
-  const auto agents = static_cast<std::uint32_t>(roster_.size());
   auto agent =
       std::make_unique<RealTimeAgent>(context, port_, roster_.member(id), reactor_,
                                       RealTimeAgent::Options{.what = remote_options(prepared_, id),

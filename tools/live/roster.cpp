@@ -59,7 +59,6 @@ std::vector<AgentId> Roster::update(std::int64_t now_ns) {
   for (std::size_t i = 0; i < members_.size(); ++i) {
     Member& member = members_[i];
     if (member.here || member.process == 0 || !member.alive()) continue;
-    if (!member.ours && !member.measurements.matched()) continue;
     if (member.ours && (!member.orders.matched() || member.answers.writers_alive() == 0)) continue;
     member.here = true;
     arrived.push_back(static_cast<AgentId>(i));

@@ -10,6 +10,8 @@ namespace hearsay::fleet {
 /// Until agents give up their world, and a world in lockstep an agent. An agent that is given up by
 /// mistake can join again; who gives up its world is lost.
 inline constexpr double world_grace_s = 8.0, agent_grace_s = 3.0;
+/// Until a world in real time gives up an agent, for which it does not wait.
+inline constexpr double call_grace_s = 0.5;
 
 /// Where processors are busy, or this very process was stopped for a while, a sign of life may come
 /// late: gone is who was seen without one for so long on end.

@@ -2,17 +2,39 @@
 """Beliefs between two processes in live mode, beside ddsperf with packets of the same size, the same settings of
 Cyclone DDS and in turn with it.
 
-Usage: live.py LIVE_BENCH [SECONDS]     writes Markdown
+And fleets in lockstep: how fast simulated time goes by, and how long a fleet takes to start and to end.
+
+Usage: live.py LIVE_BENCH HEARSAY [SECONDS]     writes Markdown
 """
 import os
 import re
 import statistics
 import subprocess
 import sys
+import tempfile
+import time
+from pathlib import Path
 
 LOADS = {"gaussian": "a Gaussian, 4-D", "trajectory": "a trajectory, 20 states in 6-D", "grid": "a grid, 100 × 100 cells"}
 GOAL = 0.5  # of ddsperf's throughput
 REPETITIONS = 3
+FLEETS = (5, 20)  # agents
+START_GOAL_S = 5.0  # of the largest fleet
+RING = """\
+duration_s = 1
+[world]
+targets = [{ name = "alarm", position_m = [40.0, 25.0] }]
+[radio]
+topology = "ring"
+rate_bps = 250_000
+loss = { model = "bernoulli", probability = 0.1 }
+[[agents]]
+sensor = { kind = "position", period_s = 1.0, sigma_m = 5.0 }
+estimator = { kind = "static-gaussian", fusion = "ci-det" }
+talk = { policy = "periodic", period_s = 1.0 }
+[record]
+ledger = "off"
+"""
 
 
 def ours(bench, load, what, seconds):
@@ -51,9 +73,45 @@ def ddsperf_us(environment, size, seconds):
                                   ["-D", str(seconds), "pong", "waitset"], r" 50% ([0-9.]+)us"))
 
 
+def wall_s(hearsay, scenario, agents, duration_s, *mode):
+    command = [hearsay, *mode, scenario, "--set", f"agents.count={agents}", "--set", f"duration_s={duration_s}",
+               "--digest"]
+    begin = time.monotonic()
+    digest = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    return time.monotonic() - begin, digest
+
+
+def fleets(hearsay):
+    print("\n## Fleets in lockstep\n")
+    print("`hearsay live --lockstep` of a ring of agents that measure and talk once a second, beside `hearsay run` of "
+          f"the same; medians of {REPETITIONS}. Start and end: a fleet that lives for a second of its time. Simulated "
+          "seconds a second: of 500 more.\n")
+    print("| processes | start and end [s] | goal | | simulated s a second | `hearsay run` | µs an agent and second |")
+    print("|---|---|---|---|---|---|---|")
+    with tempfile.TemporaryDirectory() as scratch:
+        scenario = Path(scratch) / "ring.toml"
+        scenario.write_text(RING)
+        for agents in FLEETS:
+            short, longer, alone = [], [], []
+            for _ in range(REPETITIONS):
+                short.append(wall_s(hearsay, scenario, agents, 1, "live", "--lockstep")[0])
+                took_s, digest = wall_s(hearsay, scenario, agents, 501, "live", "--lockstep")
+                longer.append(took_s)
+                here_s, same = wall_s(hearsay, scenario, agents, 501, "run")
+                alone.append(here_s)
+                if digest != same:
+                    sys.exit("the fleet's digest is not that of the run")
+            start_s = statistics.median(short)
+            lived_s = statistics.median(longer) - start_s
+            judged = agents == max(FLEETS)
+            goal = (f"< {START_GOAL_S:g}", "met" if start_s < START_GOAL_S else "**missed**") if judged else ("", "")
+            print(f"| {agents} + 1 | {start_s:.2f} | {goal[0]} | {goal[1]} | {500 / lived_s:,.0f} | "
+                  f"{501 / statistics.median(alone):,.0f} | {1e6 * lived_s / 500 / agents:,.0f} |")
+
+
 def main():
-    bench = sys.argv[1]
-    seconds = int(sys.argv[2]) if len(sys.argv) > 2 else 3
+    bench, hearsay = sys.argv[1:3]
+    seconds = int(sys.argv[3]) if len(sys.argv) > 3 else 3
     config = subprocess.run([bench, "config"], check=True, capture_output=True, text=True).stdout
     environment = {**os.environ, "CYCLONEDDS_URI": config.strip()}
     print("\n## Beliefs between processes\n")
@@ -75,6 +133,7 @@ def main():
         print(f"| {meaning} | {size:,} | {rate:,.0f} | {their_rate:,.0f} | {ratio:.2f} | ≥ {GOAL} | "
               f"{'met' if ratio >= GOAL else '**missed**'} | {statistics.median(trips):.0f} | "
               f"{statistics.median(their_trips):.0f} |")
+    fleets(hearsay)
 
 
 if __name__ == "__main__":

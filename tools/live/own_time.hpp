@@ -71,7 +71,7 @@ class OwnTime final : private RadioPort, private EstimatorWitness, private Recor
   const AgentOptions& options_;
   live::Welcome welcome_;
   Reactor& reactor_;
-  remote::MemoryStore* memory_;  // null: it has none
+  remote::MemoryStore* memory_;       // null: it has none
   Presence presence_{world_grace_s};  // of the world
   Tongue tongue_;
   AirOut air_out_;

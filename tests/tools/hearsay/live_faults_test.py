@@ -8,7 +8,7 @@ from live_bed import LiveBed
 # Nothing is lost, so that what is not heard was not said; who is outdated is refused.
 CALM = ["--set", "radio.loss.probability=0.0", "--set", 'agents.estimator.fusion="channel-robust"',
         "--set", "record.messages=all"]
-DURATION_S = {"--lockstep": 1200.0, "--speed": 160.0}
+DURATION_S = {"--lockstep": 800.0, "--speed": 160.0}
 
 
 class AnAgentIsKilled(LiveBed):

@@ -1,4 +1,5 @@
 """Who does not belong to a fleet is refused, and is told why; two fleets do not mix."""
+import signal
 import unittest
 
 from bed import RING, SOURCE
@@ -28,12 +29,13 @@ class Refused(LiveBed):
         self.expect_refusal("there is no agent 4: the scenario has 4", 4, "ring.toml", "--set", "agents.count=5")
 
     def test_an_agent_that_is_there_already(self):
-        world, agents = self.world_and_agents("ring.toml", "--set", "duration_s=60", world=["--speed", 10])
+        world, agents = self.world_and_agents("ring.toml", "--set", "duration_s=100000", world=["--speed", 20])
         self.until(lambda: world.now_s() > 0, "the run begins")
-        double = self.start("agent", "ring.toml", "--set", "duration_s=60", "--id", 2)
+        double = self.start("agent", "ring.toml", "--set", "duration_s=100000", "--id", 2)
         self.ends(double, 1)
         self.assertIn("the world refused it: agent 2 is there already", double.trouble())
-        self.ends(world)
+        world.kill(signal.SIGTERM)
+        self.ends(world, 1)
         for agent in agents:
             self.ends(agent)
 

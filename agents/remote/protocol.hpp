@@ -23,9 +23,6 @@
 
 namespace hearsay::remote {
 
-/// A change of the orders, or of what is in the frames that carry them, changes this.
-inline constexpr std::uint32_t protocol_version = 1;
-
 enum class OrderKind : std::uint8_t {
   start,
   wake,         ///< the first of its plans is due

@@ -14,6 +14,14 @@ constexpr int calls_max = 1'000'000;
 
 }  // namespace
 
+Surroundings surroundings_of(const Context& context, bool knows_place) {
+  Surroundings around{.up = context.up(),
+                      .hears_strangers = context.hears_strangers(),
+                      .waiting = static_cast<std::uint32_t>(context.waiting())};
+  if (knows_place) around.position_m = context.position();
+  return around;
+}
+
 RemoteAgent::RemoteAgent(Context& context, Line& line, EstimatorWitness* witness,
                          const Options& options)
     : StandIn(context), line_(line), witness_(witness), options_(options), believer_(*this) {
@@ -23,17 +31,14 @@ RemoteAgent::RemoteAgent(Context& context, Line& line, EstimatorWitness* witness
 }
 
 Order RemoteAgent::order(OrderKind kind) {
-  Order order{.kind = kind, .now = context().now()};
-  Surroundings& around = order.surroundings;
-  around.up = context().up();
-  around.hears_strangers = context().hears_strangers();
-  around.waiting = static_cast<std::uint32_t>(context().waiting());
-  if (options_.knows_place) around.position_m = context().position();
+  Order order{.kind = kind,
+              .now = context().now(),
+              .surroundings = surroundings_of(context(), options_.knows_place)};
   const std::span<const AgentId> now = context().neighbours();
   if (kind == OrderKind::start ||
       !std::equal(now.begin(), now.end(), told_neighbours_.begin(), told_neighbours_.end())) {
     told_neighbours_.assign(now.begin(), now.end());
-    around.neighbours = told_neighbours_;
+    order.surroundings.neighbours = told_neighbours_;
   }
   if (!options_.moving || !witness_ || !witness_->ledgers()) return order;
   const auto& measured_at = witness_->workspace().measured_at;

@@ -24,6 +24,10 @@ class Line {
   virtual void tell(const Order& order) = 0;
 };
 
+/// What the agent of `context` can see, but for its neighbours. `knows_place`: the scenario says
+/// where it is.
+Surroundings surroundings_of(const Context& context, bool knows_place);
+
 class RemoteAgent final : public StandIn {
  public:
   struct Options {

@@ -4,21 +4,14 @@
 #include <utility>
 
 #include "sim/kernel/error.hpp"
+#include "sim/kernel/what_of.hpp"
 
 namespace hearsay::remote {
-namespace {
-
-std::string what_of(const std::exception_ptr& error) {
-  try {
-    std::rethrow_exception(error);
-  } catch (const std::exception& known) {
-    return known.what();
-  } catch (...) {
-    return "an exception that is not a std::exception";
-  }
+void begin_life(Agent& agent, MemoryStore* memory, std::uint32_t lives) {
+  agent.start();
+  if (memory && memory->recall(agent)) return;
+  for (std::uint32_t life = 0; life < lives; ++life) agent.on_up(true);
 }
-
-}  // namespace
 
 RemoteWorld::RemoteWorld(Superior& superior, const Order& first, const Options& options)
     : superior_(superior), options_(options), order_(first) {
@@ -32,7 +25,12 @@ bool RemoteWorld::serve(const Parts& parts) {
   for (bool begun = false;; begun = true) {
     std::exception_ptr error;
     try {
-      begun ? obey() : begin();
+      if (begun) {
+        obey();
+      } else {
+        parts.simulation.advance(order_.now);
+        begin_life(parts.agent, options_.memory, order_.lives);
+      }
     } catch (...) {
       error = std::current_exception();
     }
@@ -87,14 +85,6 @@ void RemoteWorld::obey() {
       break;
   }
   throw BrokenInvariant("an order at the wrong time");
-}
-
-// Whoever began before in this run has lost its memory, unless it was kept, and others know it.
-void RemoteWorld::begin() {
-  parts_->simulation.advance(order_.now);
-  parts_->agent.start();
-  if (options_.memory && options_.memory->recall(parts_->agent)) return;
-  for (std::uint32_t life = 0; life < order_.lives; ++life) parts_->agent.on_up(true);
 }
 
 Packet RemoteWorld::packet() {

@@ -22,6 +22,10 @@ class MemoryStore {
   virtual void save(const Agent& agent) = 0;
 };
 
+/// The agent starts, for the `lives`-th time in this run, counted from 0. Whoever started before
+/// has lost its memory, unless it was kept, and others know it. `memory` may be null.
+void begin_life(Agent& agent, MemoryStore* memory, std::uint32_t lives);
+
 /// Where orders come from.
 class Superior {
  public:
@@ -84,7 +88,6 @@ class RemoteWorld final : public RadioPort,
 
   void look_around();
   void obey();
-  void begin();
   Packet packet();
   void report();
   void call(AnswerKind kind);

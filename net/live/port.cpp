@@ -270,10 +270,6 @@ Reader Port::reader(const TopicId& topic, const std::string& partition) {
       changes.get(), [](dds_entity_t, const dds_subscription_matched_status_t, void* wake) {
         static_cast<EventFd*>(wake)->raise();
       });
-  dds_lset_liveliness_changed(changes.get(),
-                              [](dds_entity_t, const dds_liveliness_changed_status_t, void* wake) {
-                                static_cast<EventFd*>(wake)->raise();
-                              });
   Entity entity(dds_create_reader(place.group.get(), place.topic.get(), qos.get(), changes.get()),
                 "reader");
   return Reader(std::make_unique<Reader::Impl>(impl_, std::move(place), std::move(entity)));

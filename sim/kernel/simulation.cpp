@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "sim/kernel/error.hpp"
+#include "sim/kernel/what_of.hpp"
 
 namespace hearsay {
 
@@ -15,16 +16,6 @@ std::string to_seconds(Time time) {
   const std::string fraction = std::to_string(time.nanoseconds() % ns_per_s);
   return std::to_string(time.nanoseconds() / ns_per_s) + "." +
          std::string(9 - fraction.size(), '0') + fraction;
-}
-
-std::string what_of(const std::exception_ptr& error) {
-  try {
-    std::rethrow_exception(error);
-  } catch (const std::exception& known) {
-    return known.what();
-  } catch (...) {
-    return "an exception that is not a std::exception";
-  }
 }
 
 }  // namespace

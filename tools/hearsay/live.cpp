@@ -86,7 +86,6 @@ int live_world(const LiveVerb& verb, const Catalog& catalog) {
                                     .seed = seed,
                                     .lockstep = verb.lockstep,
                                     .speed = verb.speed,
-                                    .direct = verb.radio == "direct",
                                     .patience_s = verb.patience_s,
                                     .scenario_hash = scenario_hash(as_given),
                                     .version = version_text()};

@@ -93,11 +93,11 @@ Tongue tongue_of(const PreparedScenario& prepared, AgentId id) {
 }
 
 std::vector<Tongue> tongues_of(const PreparedScenario& prepared) {
-  std::set<Tongue> tongues;
+  std::vector<Tongue> tongues;
   for (std::size_t i = 0; i < prepared.specs.size(); ++i) {
-    tongues.insert(tongue_of(prepared, static_cast<AgentId>(i)));
+    tongues.push_back(tongue_of(prepared, static_cast<AgentId>(i)));
   }
-  return {tongues.begin(), tongues.end()};
+  return tongues;
 }
 
 bool is_sound(const Tongue& tongue, std::span<const std::byte> message) {
@@ -122,16 +122,13 @@ bool AirOut::write(const Tongue& tongue, const Parcel& parcel) {
   if (found == writers_.end()) {
     found = writers_.emplace(topic.name, port_.writer(topic, partition_)).first;
   }
-  if (known) {
-    live::pack(parcel.envelope, parcel.message, bytes_);
-  } else {
-    live::pack_octets(parcel.envelope, parcel.kind, parcel.message, bytes_);
-  }
+  if (known) return found->second.write_packet(parcel.envelope, parcel.message);
+  live::pack_octets(parcel.envelope, parcel.kind, parcel.message, bytes_);
   return found->second.write(bytes_);
 }
 
 AirIn::AirIn(live::Port& port, const std::string& partition, const std::vector<Tongue>& tongues) {
-  for (const Tongue& tongue : tongues) {
+  for (const Tongue& tongue : std::set<Tongue>(tongues.begin(), tongues.end())) {
     for (const live::TopicId& topic : live::air_topics(tongue.kind, tongue.states)) {
       ears_.push_back({tongue, port.reader(topic, partition)});
     }
@@ -140,26 +137,30 @@ AirIn::AirIn(live::Port& port, const std::string& partition, const std::vector<T
 
 bool AirIn::take(Parcel& parcel) {
   for (Ear& ear : ears_) {
-    while (ear.reader.take(bytes_)) {
-      if (open(ear.tongue, parcel)) return true;
-      ++dropped_;
-    }
+    if (form_named(ear.tongue.kind) ? hear(ear, parcel) : hear_octets(ear, parcel)) return true;
   }
   return false;
 }
 
-bool AirIn::open(const Tongue& tongue, Parcel& parcel) {
-  if (!form_named(tongue.kind)) {
-    std::span<const std::byte> message;
-    if (!live::unpack_octets(bytes_, parcel.envelope, parcel.kind, message)) return false;
-    parcel.message.assign(message.begin(), message.end());
-    return true;
+bool AirIn::hear(Ear& ear, Parcel& parcel) {
+  while (ear.reader.take_packet(parcel.envelope, parcel.message)) {
+    parcel.kind = ear.tongue.kind;
+    if (is_sound(ear.tongue, parcel.message)) return true;
+    ++dropped_;
   }
-  std::span<std::byte> message;
-  if (!live::unpack(bytes_, parcel.envelope, message)) return false;
-  parcel.kind = tongue.kind;
-  parcel.message.assign(message.begin(), message.end());
-  return is_sound(tongue, parcel.message);
+  return false;
+}
+
+bool AirIn::hear_octets(Ear& ear, Parcel& parcel) {
+  while (ear.reader.take(bytes_)) {
+    std::span<const std::byte> message;
+    if (live::unpack_octets(bytes_, parcel.envelope, parcel.kind, message)) {
+      parcel.message.assign(message.begin(), message.end());
+      return true;
+    }
+    ++dropped_;
+  }
+  return false;
 }
 
 std::uint64_t AirIn::dropped() const {

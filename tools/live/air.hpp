@@ -19,8 +19,8 @@ struct Tongue {
   live::States states = live::States::still;
   auto operator<=>(const Tongue&) const = default;
 };
-/// Of all agents of a scenario: those who estimate speak the kinds of their rules; what others say
-/// is known to themselves alone, and travels as octets.
+/// Of each agent of a scenario, by number: those who estimate speak the kinds of their rules; what
+/// others say is known to themselves alone, and travels as octets.
 std::vector<Tongue> tongues_of(const PreparedScenario& prepared);
 Tongue tongue_of(const PreparedScenario& prepared, AgentId id);
 
@@ -53,6 +53,7 @@ class AirOut {
 
 class AirIn {
  public:
+  /// `tongues`: what is heard; one may stand there more than once.
   AirIn(live::Port& port, const std::string& partition, const std::vector<Tongue>& tongues);
   /// The next packet, whatever its kind; false if there is none now. What is unsound, or no packet
   /// at all, is passed over and counted.
@@ -64,7 +65,8 @@ class AirIn {
     Tongue tongue;
     live::Reader reader;
   };
-  bool open(const Tongue& tongue, Parcel& parcel);
+  bool hear(Ear& ear, Parcel& parcel);
+  bool hear_octets(Ear& ear, Parcel& parcel);
 
   std::vector<Ear> ears_;
   std::vector<std::byte> bytes_;

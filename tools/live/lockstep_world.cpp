@@ -5,11 +5,8 @@
 #include "scenarios/solo.hpp"
 
 namespace hearsay::fleet {
-namespace {
 
 using namespace std::chrono_literals;
-
-}  // namespace
 
 LockstepWorld::LockstepWorld(const PreparedScenario& prepared, Roster& roster, Reactor& reactor)
     : prepared_(prepared), roster_(roster), reactor_(reactor) {

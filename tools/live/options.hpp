@@ -20,7 +20,6 @@ struct WorldOptions {
   std::uint64_t seed = 1;
   bool lockstep = false;
   double speed = 1.0;        ///< real time: simulated seconds a second, > 0
-  bool direct = false;       ///< real time: agents hear each other without the world's radio
   double patience_s = 30.0;  ///< how long it waits for all agents to come
   std::string scenario_hash;
   std::string version;
@@ -29,7 +28,7 @@ struct WorldOptions {
 struct AgentOptions {
   FleetOptions fleet;
   AgentId id = 0;
-  bool direct = false;
+  bool direct = false;       ///< real time: agents hear each other without the world's radio
   double patience_s = 30.0;  ///< how long it waits for a world
   std::string memory;        ///< file that keeps what it remembers; empty: none
   std::string scenario_hash;

@@ -127,11 +127,7 @@ void OwnTime::begin(const Catalog& catalog, const Order& order) {
   const Solo::Options own{
       .id = options_.id, .seed = welcome_.seed, .now = now(), .tap = tap, .plans = nullptr};
   solo_ = std::make_unique<Solo>(prepared_, catalog, radio, witness, own);
-  at_once([this, &order] {
-    solo_->agent().start();
-    if (memory_ && memory_->recall(solo_->agent())) return;
-    for (std::uint32_t life = 0; life < order.lives; ++life) solo_->agent().on_up(true);
-  });
+  at_once([this, &order] { remote::begin_life(solo_->agent(), memory_, order.lives); });
 }
 
 bool OwnTime::obey(const Catalog& catalog, const Order& order) {

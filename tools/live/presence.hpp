@@ -17,7 +17,7 @@ inline constexpr double call_grace_s = 0.5;
 /// late: gone is who was seen without one for so long on end.
 class Presence {
  public:
-  /// `grace_s`: after DDS's own lease of a second.
+  /// `grace_s`: after DDS's own lease, of two seconds.
   explicit Presence(double grace_s) : grace_s_(grace_s) {}
   /// To be asked every now and then. `alive`: what DDS says.
   bool gone(bool alive) {

@@ -28,16 +28,16 @@ RealTimeAgent::RealTimeAgent(Context& context, live::Port& port, Member& member,
       believer_(*this),
       line_(member, reactor, context.id()),
       air_out_(port, live::agent_partition(port.fleet(), static_cast<std::uint32_t>(context.id()))),
-      air_in_(port, said_partition(port.fleet(), context.id()), {options_.tongue}) {
+      air_in_(port, said_partition(port.fleet(), context.id()),
+              {options_.tongues[static_cast<std::size_t>(context.id())]}) {
   beliefs_.resize(static_cast<std::size_t>(options_.what.subjects),
                   {gaussian::Belief::unknown(std::max(options_.what.dimension, 1)), Ledger()});
 }
 
 Order RealTimeAgent::order(OrderKind kind) {
-  Order order{.kind = kind, .now = context().now()};
-  order.surroundings.up = context().up();
-  order.surroundings.hears_strangers = context().hears_strangers();
-  if (options_.what.knows_place) order.surroundings.position_m = context().position();
+  Order order{.kind = kind,
+              .now = context().now(),
+              .surroundings = remote::surroundings_of(context(), options_.what.knows_place)};
   const std::span<const AgentId> now = context().neighbours();
   told_neighbours_.assign(now.begin(), now.end());
   order.surroundings.neighbours = told_neighbours_;
@@ -75,18 +75,13 @@ void RealTimeAgent::on_measurement(const Measurement& measurement) {
 
 void RealTimeAgent::on_packet(const Packet& packet) {
   if (silent_) return;
-  const std::string& kind = context().simulation().record().text(packet.kind);
-  const auto tongue =
-      std::find_if(options_.tongues.begin(), options_.tongues.end(), [&](const Tongue& candidate) {
-        return candidate.kind == kind && is_sound(candidate, packet.bytes);
-      });
   parcel_.envelope = {.sender = static_cast<std::uint32_t>(packet.sender),
                       .receiver = static_cast<std::uint32_t>(packet.receiver),
                       .number = ++number_,
                       .sent_ns = packet.sent.nanoseconds()};
-  parcel_.kind = kind;
+  parcel_.kind = context().simulation().record().text(packet.kind);
   parcel_.message.assign(packet.bytes.begin(), packet.bytes.end());
-  air_out_.write(tongue == options_.tongues.end() ? Tongue{.kind = "octets"} : *tongue, parcel_);
+  air_out_.write(options_.tongues[static_cast<std::size_t>(packet.sender)], parcel_);
 }
 
 void RealTimeAgent::on_up(bool forgets) {
@@ -115,8 +110,7 @@ bool RealTimeAgent::take() {
 
 bool RealTimeAgent::can_be_sent(const live::Envelope& envelope) const {
   const auto me = static_cast<std::uint32_t>(context().id());
-  const bool somebody =
-      envelope.receiver < static_cast<std::uint32_t>(options_.agents) && envelope.receiver != me;
+  const bool somebody = envelope.receiver < options_.tongues.size() && envelope.receiver != me;
   return envelope.sender == me && (somebody || envelope.receiver == live::everybody) &&
          envelope.tick < ticks_max;
 }

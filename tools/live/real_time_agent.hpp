@@ -15,9 +15,7 @@ class RealTimeAgent final : public remote::StandIn {
  public:
   struct Options {
     remote::RemoteAgent::Options what;
-    Tongue tongue;                ///< what it says
-    std::vector<Tongue> tongues;  ///< what it hears
-    int agents = 0;               ///< in the fleet
+    std::vector<Tongue> tongues;  ///< of each agent of the fleet
   };
   /// All outlive this.
   RealTimeAgent(Context& context, live::Port& port, Member& member, Reactor& reactor,

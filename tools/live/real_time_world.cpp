@@ -33,9 +33,7 @@ std::unique_ptr<remote::StandIn> RealTimeWorld::stand_in(Context& context, Estim
   auto agent =
       std::make_unique<RealTimeAgent>(context, port_, roster_.member(id), reactor_,
                                       RealTimeAgent::Options{.what = remote_options(prepared_, id),
-                                                             .tongue = tongue_of(prepared_, id),
-                                                             .tongues = tongues_of(prepared_),
-                                                             .agents = roster_.size()});
+                                                             .tongues = tongues_of(prepared_)});
   agents_[static_cast<std::size_t>(id)] = agent.get();
   return agent;
 }

@@ -88,20 +88,17 @@ std::vector<Bytes> unsound_messages() {
 /// A world in a thread. Agents that the test is itself know the topics alone.
 class Fleet {
  public:
-  Fleet(const std::string& name, bool direct) : fleet_(live::own_fleet(name)) {
+  explicit Fleet(const std::string& name) : fleet_(live::own_fleet(name)) {
     const std::string file = testing::TempDir() + fleet_ + ".toml";
     std::ofstream(file) << two_agents;
     LogCache logs;
     prepared_ = prepare(load_scenario(file, {}, known_names(catalog_)), catalog_, logs);
     std::filesystem::remove(file);
-    world_ = std::thread([this, direct] {
-      result_ = run_world(prepared_, catalog_,
-                          {.fleet = {.fleet = fleet_},
-                           .speed = 10.0,
-                           .direct = direct,
-                           .scenario_hash = "s",
-                           .version = "hearsay t"},
-                          [](const std::string&) {});
+    world_ = std::thread([this] {
+      result_ = run_world(
+          prepared_, catalog_,
+          {.fleet = {.fleet = fleet_}, .speed = 10.0, .scenario_hash = "s", .version = "hearsay t"},
+          [](const std::string&) {});
     });
   }
   ~Fleet() { end(); }
@@ -175,7 +172,7 @@ void wait_for_listeners(Fleet& fleet, const std::string& partition) {
 }
 
 TEST(Packets, WhatIsUnsoundOldOrForNobodyIsDroppedByTheWorld) {
-  Fleet fleet("packets", false);
+  Fleet fleet("packets");
   fleet.take_part(0);
   fleet.take_part(1);
   AirIn hears(fleet.port(), live::agent_partition(fleet.name(), 1), {tongue});
@@ -229,7 +226,7 @@ TEST(Packets, WhatIsUnsoundOldOrForNobodyIsDroppedByTheWorld) {
 }
 
 TEST(Packets, WithoutTheWorldsRadioTheAgentItselfDropsThem) {
-  Fleet fleet("direct", true);
+  Fleet fleet("direct");
   fleet.take_part(1);
   live::Reader reports =
       fleet.port().reader(live::report_topic(), live::agent_partition(fleet.name(), 0));

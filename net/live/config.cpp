@@ -42,7 +42,7 @@ std::string cyclone_config(std::uint32_t domain, const std::string& interface) {
   xml += "</General><Discovery><ExternalDomainId>" + std::to_string(domain) +
          "</ExternalDomainId><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>";
   xml += participants_max;
-  xml += "</MaxAutoParticipantIndex><LeaseDuration>5s</LeaseDuration>";
+  xml += "</MaxAutoParticipantIndex><LeaseDuration>2s</LeaseDuration>";
   if (loopback) xml += loopback_peers;
   xml += "</Discovery><Internal><MaxSampleSize>" + std::to_string(sample_bytes_max) +
          "B</MaxSampleSize><Watermarks><WhcHigh>8MB</WhcHigh><WhcHighInit>8MB</WhcHighInit></"

@@ -56,7 +56,8 @@ class Reader {
   /// The next sample, with its header (little-endian, without padding), in place of what `out`
   /// held; false if there is none. Whoever does not take for long makes writers wait.
   bool take(std::vector<std::byte>& out, SampleInfo* info = nullptr);
-  /// Writers of the topic that have shown life within the last second.
+  /// Writers of the topic that are there. Of a process that was killed or is stopped they are not
+  /// after two seconds without a sign of life (programs of others may have chosen otherwise).
   int writers_alive() const;
   /// Samples so far that take() passed over since they were not of the topic's type.
   std::uint64_t malformed() const;
@@ -86,7 +87,7 @@ class Port {
   Reader reader(const TopicId& topic, const std::string& partition);
 
   /// An eventfd: readable if since the last drain() anything arrived, or a writer or reader of a
-  /// topic of ours appeared, vanished, fell silent or spoke again. Belongs to the port.
+  /// topic of ours appeared or vanished. Belongs to the port.
   int wake_fd() const;
   /// Call it before looking at readers, so that nothing is missed.
   void drain();

@@ -29,6 +29,18 @@ class Agent : public Receiver {
   virtual void on_down() {}
   /// It is back; `forgets` if it lost its memory.
   virtual void on_up(bool forgets) { static_cast<void>(forgets); }
+  /// All that it remembers, in place of what `memory` held, so that another process can take its
+  /// place. @return false if agents of its kind cannot be saved.
+  virtual bool save(std::vector<std::byte>& memory) const {
+    static_cast<void>(memory);
+    return false;
+  }
+  /// Called once after start(): takes up what was saved. @return false, and nothing is changed, if
+  /// that is of another kind of agent, or damaged.
+  virtual bool recall(std::span<const std::byte> memory) {
+    static_cast<void>(memory);
+    return false;
+  }
   /// Called once after the last event, to leave final values in the record.
   virtual void finish() {}
 

@@ -115,6 +115,19 @@ class Estimator : public Believer {
   /// Comes back from a reboot that lost the memory: it knows nothing and remembers nobody's words.
   virtual void forget() = 0;
 
+  /// All that it knows and remembers, in place of what `memory` held. @return false if estimators
+  /// of its kind cannot be saved.
+  virtual bool save(std::vector<std::byte>& memory) const {
+    static_cast<void>(memory);
+    return false;
+  }
+  /// Takes up, before anything else happens to it, what another with the same options saved.
+  /// @return false, and nothing is changed, if the memory is of another kind, or damaged.
+  virtual bool recall(std::span<const std::byte> memory) {
+    static_cast<void>(memory);
+    return false;
+  }
+
   /// What it expects of its next measurement, where that is at hand at no cost: the belief about a
   /// subject as it is now. Else nullptr.
   virtual const gaussian::Belief* expectation(int subject) const {

@@ -85,6 +85,12 @@ std::unique_ptr<Estimator> EstimatorAgent::make_estimator(Context& context,
       context.neighbours());
 }
 
+bool EstimatorAgent::recall(std::span<const std::byte> memory) {
+  if (!estimator_->recall(memory)) return false;
+  advance();
+  return true;
+}
+
 std::int64_t EstimatorAgent::stamp() const {
   return options_.motion ? options_.motion->stamp_at(context().now()) : 0;
 }

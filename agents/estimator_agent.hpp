@@ -44,6 +44,8 @@ class EstimatorAgent final : public Agent, public MeasurementReceiver {
   void on_measurement(const Measurement& measurement) override;
   void on_packet(const Packet& packet) override;
   void on_up(bool forgets) override;
+  bool save(std::vector<std::byte>& memory) const override { return estimator_->save(memory); }
+  bool recall(std::span<const std::byte> memory) override;
   void finish() override;
 
   const Estimator& estimator() const { return *estimator_; }

@@ -165,13 +165,14 @@ constexpr std::array kMetrics = {
     MetricInfo{
         "trips", kScalar, kMean, false,
         "of a forager: how often it reached the event that it had set off to from another, or "
-        "from its start; of agent −1: of all together"},
+        "from its start; where respawn carries it back because its trail grew too long, it sets "
+        "off anew, and what it had driven is part of no trip; of agent −1: of all together"},
     MetricInfo{"distance_driven_m", kScalar, kMean, false,
                "of a forager: true way; of agent −1: of all together, m"},
     MetricInfo{
         "trip_time_mean_s", kScalar, kMean, false,
         "of a forager, and over the trips of all: mean time of a trip since the robot last set "
-        "off, s"},
+        "off, without attempts that it abandoned before, s"},
     MetricInfo{"trip_length_mean_m", kScalar, kMean, false, "the same: mean way of a trip, m"},
     MetricInfo{"first_arrival_s", kScalar, Aggregate::median, false,
                "of a forager: end of its first trip; of agent −1: of the first trip of all, s; "

@@ -5,7 +5,8 @@ set(config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/hearsay)
 
 install(DIRECTORY sim net filters agents scenarios tools
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hearsay FILES_MATCHING PATTERN "*.hpp"
-  PATTERN figures EXCLUDE PATTERN bench EXCLUDE)
+  PATTERN figures EXCLUDE PATTERN bench EXCLUDE
+  PATTERN raw_type.hpp EXCLUDE PATTERN descriptors.hpp EXCLUDE PATTERN cdr_fields.hpp EXCLUDE)
 install(DIRECTORY scenarios DESTINATION ${CMAKE_INSTALL_DATADIR}/hearsay
   FILES_MATCHING PATTERN "*.toml" REGEX "/plans/[^/]*[.]txt$")
 install(DIRECTORY tools/figures DESTINATION ${CMAKE_INSTALL_DATADIR}/hearsay/tools

@@ -63,7 +63,7 @@ class ForagerChecker {
   void check_forager(const AgentSpec& agent, const KeyPath& path);
   void check_body(const AgentSpec& agent, const KeyPath& path) const;
   void check_robot(const AgentSpec& agent, const KeyPath& path);
-  void check_task(const TaskSpec& task, const KeyPath& path);
+  void check_task(const TaskSpec& task, const TrailsSpec& trails, const KeyPath& path);
   void check_talk(const AgentSpec& agent, const KeyPath& path) const;
   void check_like_first(const AgentSpec& agent, const KeyPath& path, std::size_t number);
   void check_packets() const;
@@ -136,7 +136,7 @@ void ForagerChecker::check_forager(const AgentSpec& agent, const KeyPath& path) 
   if (!agent.trails) fail(path["trails"], "missing; as trails = { parameters = \"lost-2002\" }");
   check_body(agent, path);
   check_robot(agent, path["robot"]);
-  check_task(*agent.task, path["task"]);
+  check_task(*agent.task, *agent.trails, path["task"]);
   check_trails(file_, *agent.trails, path["trails"]);
   check_talk(agent, path["talk"]);
   crumbs_ += 1.0 * agent.count * agent.trails->crumbs_max;
@@ -184,7 +184,8 @@ void ForagerChecker::check_robot(const AgentSpec& agent, const KeyPath& path) {
   if (rays_ > rays_max) fail(path, "more than 1e7 rays, for all foragers together; lower rays");
 }
 
-void ForagerChecker::check_task(const TaskSpec& task, const KeyPath& path) {
+void ForagerChecker::check_task(const TaskSpec& task, const TrailsSpec& trails,
+                                const KeyPath& path) {
   const KeyPath events = path["events"];
   if (task.events.empty()) fail(events, "missing; names of sources or places");
   if (task.events.size() > events_max) {
@@ -193,6 +194,7 @@ void ForagerChecker::check_task(const TaskSpec& task, const KeyPath& path) {
   if (task.events.size() == 1 && !task.respawn) {
     fail(events, "one event alone needs respawn = true, or the robot is there for ever");
   }
+  if (task.respawn) check_respawn(file_, trails, path["respawn"]);
   events_.insert(task.events.begin(), task.events.end());
 }
 

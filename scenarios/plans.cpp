@@ -1,8 +1,10 @@
 #include "scenarios/plans.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <string>
+#include <system_error>
 
 #include "sim/kernel/error.hpp"
 
@@ -15,6 +17,10 @@ plan::Drawing drawing_of(const ScenarioUnderCheck& file, const PlanSpec& spec,
                          const KeyPath& path) {
   if (spec.file.empty()) {
     file.fail(path["file"], "missing; which drawing in text, or bitmap in PNG?");
+  }
+  std::error_code error;
+  if (!std::filesystem::exists(spec.file, error)) {
+    file.fail(path["file"], "there is no file \"" + spec.file + "\"");
   }
   if (is_bitmap(spec)) return plan::read_png(spec.file, spec.cell_m, spec.wall_below.value_or(128));
   if (spec.wall_below) {

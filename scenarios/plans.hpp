@@ -8,7 +8,8 @@ namespace hearsay {
 
 /// Reads world.plan.file, if there is a plan, into world.plan.plan, and adds the places.
 /// @throws InputError "corridor.txt:3: …" for what plan::read_text() and plan::read_png() refuse,
-/// and with the key for places without name or position, twice there, or in a wall.
+/// and with the key for a file that is not there, and for places without name or position, twice
+/// there, or in a wall.
 void take_plan(ScenarioUnderCheck& file);
 
 }  // namespace hearsay

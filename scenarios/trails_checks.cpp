@@ -77,4 +77,12 @@ void check_trails(const ScenarioUnderCheck& file, const TrailsSpec& spec, const 
   }
 }
 
+void check_respawn(const ScenarioUnderCheck& file, const TrailsSpec& spec, const KeyPath& path) {
+  if (spec.navigation != "trails" || laying_of(spec) == trails::Laying::completed) return;
+  reject(file.locate(path), path,
+         "needs agents.trails.laying = \"completed\": crumbs laid at once lead back to the last "
+         "event, and who is carried away from there lays none" +
+             found_laying(spec));
+}
+
 }  // namespace hearsay

@@ -67,6 +67,8 @@ class GaussianEstimator final : public Estimator {
   /// As if the agent had rebooted: later messages are newer than all before.
   void new_incarnation();
   void forget() override;
+  bool save(std::vector<std::byte>& memory) const override;
+  bool recall(std::span<const std::byte> memory) override;
 
   double news_nats() const override;
 

@@ -1,63 +1,9 @@
 #include "agents/remote/protocol.hpp"
 
-#include "agents/remote/packing.hpp"
-#include "sim/kernel/error.hpp"
+#include "agents/packed_beliefs.hpp"
 
 namespace hearsay::remote {
 namespace {
-
-void put(Packer& out, const gaussian::Belief& belief) {
-  const int n = belief.dimension();
-  out.u8(static_cast<std::uint8_t>(n));
-  for (int i = 0; i < n; ++i) out.f64(belief.xi(i));
-  for (int j = 0; j < n; ++j) {
-    for (int i = 0; i < n; ++i) out.f64(belief.omega(i, j));
-  }
-}
-
-void take(Unpacker& in, gaussian::Belief& belief) {
-  const int n = in.u8();
-  if (n > gaussian::dimension_max) {
-    in.fail();
-    return;
-  }
-  belief.xi.resize(n);
-  belief.omega.resize(n, n);
-  for (int i = 0; i < n; ++i) belief.xi(i) = in.f64();
-  for (int j = 0; j < n; ++j) {
-    for (int i = 0; i < n; ++i) belief.omega(i, j) = in.f64();
-  }
-}
-
-void put(Packer& out, const Ledger& ledger) {
-  const Ledger::Parts parts = ledger.parts();
-  out.u8(static_cast<std::uint8_t>(parts.dimension));
-  out.flag(parts.moves);
-  out.flag(parts.exact);
-  out.numbers(parts.weights);
-  out.numbers(parts.matrices);
-  out.numbers(parts.drift);
-  out.bytes(std::as_bytes(std::span(parts.reach)));
-}
-
-void take(Unpacker& in, Ledger& ledger) {
-  Ledger::Parts parts;
-  parts.dimension = in.u8();
-  parts.moves = in.flag();
-  parts.exact = in.flag();
-  parts.weights = in.numbers();
-  parts.matrices = in.numbers();
-  parts.drift = in.numbers();
-  for (const std::byte reached : in.bytes()) {
-    parts.reach.push_back(std::to_integer<std::uint8_t>(reached));
-  }
-  if (!in.good()) return;
-  try {
-    ledger = Ledger::from(std::move(parts));
-  } catch (const BrokenInvariant&) {
-    in.fail();
-  }
-}
 
 void put(Packer& out, const std::vector<Ledger>& ledgers) {
   out.count(ledgers.size());
@@ -118,8 +64,7 @@ Enum take_kind(Unpacker& in, Enum last) {
   return static_cast<Enum>(value);
 }
 
-template <class Bytes>
-void take_bytes(Unpacker& in, Bytes& bytes) {
+void take_bytes(Unpacker& in, std::vector<std::byte>& bytes) {
   const std::span<const std::byte> taken = in.bytes();
   bytes.assign(taken.begin(), taken.end());
 }
@@ -228,10 +173,7 @@ void pack(const Answer& answer, std::vector<std::byte>& bytes) {
   put(out, answer.belief);
   out.text(answer.failure);
   out.count(answer.beliefs.size());
-  for (const TrackedBelief& tracked : answer.beliefs) {
-    put(out, tracked.belief);
-    put(out, tracked.ledger);
-  }
+  for (const TrackedBelief& tracked : answer.beliefs) put(out, tracked);
   put(out, answer.counts);
 }
 
@@ -255,10 +197,7 @@ bool unpack(std::span<const std::byte> bytes, Answer& answer) {
   take(in, answer.belief);
   answer.failure = in.text();
   answer.beliefs.resize(in.count(20));
-  for (TrackedBelief& tracked : answer.beliefs) {
-    take(in, tracked.belief);
-    take(in, tracked.ledger);
-  }
+  for (TrackedBelief& tracked : answer.beliefs) take(in, tracked);
   take(in, answer.counts);
   return in.done();
 }

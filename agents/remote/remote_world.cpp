@@ -39,6 +39,7 @@ bool RemoteWorld::serve(const Parts& parts) {
     if (gone_) return false;
     if (parts.simulation.failed()) error = parts.simulation.failure();
     if (error) answer_.failure = what_of(error);
+    if (options_.memory && !error) options_.memory->save(parts.agent);
     if (!answer(error ? AnswerKind::failed : AnswerKind::done)) return false;
     if (order_.kind == OrderKind::dismiss) return true;
   }
@@ -88,10 +89,11 @@ void RemoteWorld::obey() {
   throw BrokenInvariant("an order at the wrong time");
 }
 
-// Whoever began before in this run has lost its memory, and others know it.
+// Whoever began before in this run has lost its memory, unless it was kept, and others know it.
 void RemoteWorld::begin() {
   parts_->simulation.advance(order_.now);
   parts_->agent.start();
+  if (options_.memory && options_.memory->recall(parts_->agent)) return;
   for (std::uint32_t life = 0; life < order_.lives; ++life) parts_->agent.on_up(true);
 }
 

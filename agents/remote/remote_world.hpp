@@ -12,6 +12,16 @@
 
 namespace hearsay::remote {
 
+/// Where an agent's memory outlives its process.
+class MemoryStore {
+ public:
+  virtual ~MemoryStore() = default;
+  /// Lets the agent, which has started, recall what is there. @return false if nothing is there.
+  virtual bool recall(Agent& agent) = 0;
+  /// Keeps what the agent remembers now.
+  virtual void save(const Agent& agent) = 0;
+};
+
 /// Where orders come from.
 class Superior {
  public:
@@ -28,7 +38,8 @@ class RemoteWorld final : public RadioPort,
  public:
   struct Options {
     bool ledgers = false;
-    int subjects = 0;  ///< that the agent estimates
+    int subjects = 0;               ///< that the agent estimates
+    MemoryStore* memory = nullptr;  ///< null: it has none. Not owned
   };
   /// `first`: the order to start. `superior` outlives this.
   RemoteWorld(Superior& superior, const Order& first, const Options& options);

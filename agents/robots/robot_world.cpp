@@ -1,5 +1,8 @@
 #include "agents/robots/robot_world.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <utility>
 
 #include "sim/kernel/error.hpp"
@@ -16,6 +19,12 @@ std::vector<plan::Rectangle> areas_of(const std::vector<RobotWorld::Barrier>& ba
 
 // Ways are looked for on a grid that is fine enough for doors.
 constexpr double way_spacing_m = 0.125;
+
+// Points where room is looked for, along a side of so many metres.
+std::int64_t points_along(double side_m, double radius_m) {
+  constexpr double most = 500.0;
+  return static_cast<std::int64_t>(std::clamp(std::ceil(2.0 * side_m / radius_m), 1.0, most));
+}
 
 }  // namespace
 
@@ -61,17 +70,53 @@ std::optional<drive::Pose> RobotWorld::room(const Start& start, Stream& draws, i
       pose.x_m = start.at->x_m + dx;
       pose.y_m = start.at->y_m + dy;
     }
-    if (!floor_.has_room(pose, robot) || !options_.plan->free({pose.x_m, pose.y_m})) continue;
-    if (in_barrier({pose.x_m, pose.y_m})) continue;
-    const bool beyond_a_wall =
-        start.at && advance(walls_, {pose.x_m, pose.y_m}, *start.at, plan::radius_min_m).blocked;
-    if (!beyond_a_wall) return pose;
+    if (fits(start, pose, robot)) return pose;
+  }
+  return std::nullopt;
+}
+
+bool RobotWorld::fits(const Start& start, const drive::Pose& pose, int robot) {
+  const plan::Point p{pose.x_m, pose.y_m};
+  if (!floor_.has_room(pose, robot) || !options_.plan->free(p) || in_barrier(p)) return false;
+  return !start.at || !advance(walls_, p, *start.at, plan::radius_min_m).blocked;
+}
+
+std::optional<drive::Pose> RobotWorld::room_of_all(const Start& start, Stream& draws) {
+  const double u = draws.uniform(), w = draws.uniform();
+  drive::Pose pose;
+  pose.heading_rad = math::wrap_angle(start.heading_rad.value_or(2.0 * math::pi * w));
+  plan::Point low, high{walls_.width_m(), walls_.height_m()};
+  if (start.at) {
+    pose.x_m = start.at->x_m;
+    pose.y_m = start.at->y_m;
+    if (fits(start, pose, -1)) return pose;
+    low = {std::max(low.x_m, pose.x_m - start.scatter_m),
+           std::max(low.y_m, pose.y_m - start.scatter_m)};
+    high = {std::min(high.x_m, pose.x_m + start.scatter_m),
+            std::min(high.y_m, pose.y_m + start.scatter_m)};
+  }
+  const std::int64_t columns = points_along(high.x_m - low.x_m, floor_.radius_m());
+  const std::int64_t rows = points_along(high.y_m - low.y_m, floor_.radius_m());
+  const double dx_m = (high.x_m - low.x_m) / static_cast<double>(columns);
+  const double dy_m = (high.y_m - low.y_m) / static_cast<double>(rows);
+  const std::int64_t points = columns * rows;
+  const auto first = static_cast<std::int64_t>(u * static_cast<double>(points));
+  for (std::int64_t i = 0; i < points; ++i) {
+    const std::int64_t k = (first + i) % points;
+    pose.x_m = low.x_m + (static_cast<double>(k % columns) + 0.5) * dx_m;
+    pose.y_m = low.y_m + (static_cast<double>(k / columns) + 0.5) * dy_m;
+    if (start.at) {
+      const double x_m = pose.x_m - start.at->x_m, y_m = pose.y_m - start.at->y_m;
+      if (x_m * x_m + y_m * y_m > start.scatter_m * start.scatter_m) continue;
+    }
+    if (fits(start, pose, -1)) return pose;
   }
   return std::nullopt;
 }
 
 int RobotWorld::add(const Start& start, Stream draws) {
-  const auto pose = room(start, draws, -1);
+  auto pose = room(start, draws, -1);
+  if (!pose) pose = room_of_all(start, draws);
   if (pose) return floor_.add(*pose);
   throw InputError(
       "no room is found for robot " + std::to_string(floor_.robots()) + " of radius " +

@@ -52,10 +52,13 @@ class RobotWorld {
     double scatter_m = 0.0;             ///< at most so far from there, on a straight way
     std::optional<double> heading_rad;  ///< nothing: any
   };
-  /// Puts one more robot on the floor, not into a barrier that is up, or comes up at 0. @return its
-  /// number, from 0. @throws InputError if no room is found.
+  /// Puts one more robot on the floor, not into a barrier that is up, or comes up at 0: where
+  /// Options::tries draws find room first; if none does, at the start, or at the first point with
+  /// room of a lattice over the whole disc, half a radius apart or a 500th of a side: however small
+  /// the part of the disc that has room, whether it is found is no matter of luck.
+  /// @return its number, from 0. @throws InputError if no room is found.
   int add(const Start& start, Stream draws);
-  /// Carries a robot there, if room is found, as add() does.
+  /// Carries a robot there, if draws find room, as for add().
   bool carry(int robot, const Start& start, Stream draws);
 
   plan::RobotFloor& floor() { return floor_; }
@@ -79,6 +82,9 @@ class RobotWorld {
   const Source& source(trails::EventId event) const;
   void move(std::size_t source, std::size_t move);
   std::optional<drive::Pose> room(const Start& start, Stream& draws, int robot);
+  std::optional<drive::Pose> room_of_all(const Start& start, Stream& draws);
+  /// Whether there is room for that robot, or one more if −1, on a straight way from the start.
+  bool fits(const Start& start, const drive::Pose& pose, int robot);
   /// Whether the point lies in a barrier that is up.
   bool in_barrier(plan::Point p) const;
   void report(const char* kind, const std::string& detail);

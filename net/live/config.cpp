@@ -45,10 +45,11 @@ std::string cyclone_config(std::uint32_t domain, const std::string& interface) {
   xml += "</MaxAutoParticipantIndex><LeaseDuration>2s</LeaseDuration>";
   if (loopback) xml += loopback_peers;
   xml += "</Discovery><Internal><MaxSampleSize>" + std::to_string(sample_bytes_max) +
-         "B</MaxSampleSize><Watermarks><WhcHigh>8MB</WhcHigh><WhcHighInit>8MB</WhcHighInit></"
-         "Watermarks>"
-         "<SocketReceiveBufferSize min=\"default\" max=\"4MB\"/></Internal>"
-         "</Domain></CycloneDDS>";
+         "B</MaxSampleSize><WriteBatch>true</WriteBatch>";
+  // What is on its way to a reader should fit into the buffer of its socket.
+  xml +=
+      "<Watermarks><WhcHigh>2MB</WhcHigh><WhcHighInit>2MB</WhcHighInit></Watermarks>"
+      "<SocketReceiveBufferSize min=\"default\" max=\"4MB\"/></Internal></Domain></CycloneDDS>";
   return xml;
 }
 

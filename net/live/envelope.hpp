@@ -32,6 +32,9 @@ void pack(const Envelope& envelope, std::span<const std::byte> message,
 /// envelope are overwritten, and begins with its header. False unless it has header and envelope.
 bool unpack(std::span<std::byte> packet, Envelope& envelope, std::span<std::byte>& message);
 
+/// The envelope that a packet's body (all behind its header) begins with; false if it is shorter.
+bool read_envelope(std::span<const std::byte> body, Envelope& envelope);
+
 /// The same for an OctetsPacket: of a kind that no codec here knows, the bytes as the agent made
 /// them. @throws BrokenInvariant for more than messages.hpp allows.
 void pack_octets(const Envelope& envelope, const std::string& kind,

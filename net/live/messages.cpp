@@ -143,11 +143,17 @@ void pack(const Envelope& envelope, std::span<const std::byte> message,
   writer.octets(body);
 }
 
+bool read_envelope(std::span<const std::byte> body, Envelope& envelope) {
+  if (body.size() < envelope_bytes) return false;
+  cdr::Reader in(body);
+  Getter getter(in);
+  return fields(getter, envelope);
+}
+
 bool unpack(std::span<std::byte> packet, Envelope& envelope, std::span<std::byte>& message) {
-  auto in = cdr::body_of(packet);
-  if (!in || in->left() < envelope_bytes) return false;
-  Getter getter(*in);
-  fields(getter, envelope);
+  if (!cdr::body_of(packet) || !read_envelope(packet.subspan(cdr::header.size()), envelope)) {
+    return false;
+  }
   message = packet.subspan(envelope_bytes);
   std::copy(cdr::header.begin(), cdr::header.end(), message.begin());
   return true;

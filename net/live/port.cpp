@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <stdexcept>
 #include <utility>
@@ -64,21 +65,23 @@ class EventFd {
   EventFd& operator=(const EventFd&) = delete;
   ~EventFd() { close(fd_); }
   int get() const { return fd_; }
-  void drain() const {
+  void drain() {
     std::uint64_t count = 0;
     while (read(fd_, &count, sizeof count) < 0 && errno == EINTR) {
     }
+    raised_ = false;  // last: what is raised before is there to be found after
   }
-  /// From any thread.
-  static void raise(void* self) {
+  /// From any thread. Writes once between two drains, since samples may come by the million.
+  void raise() {
+    if (raised_.exchange(true)) return;
     const std::uint64_t one = 1;
-    const int fd = static_cast<const EventFd*>(self)->fd_;
-    while (write(fd, &one, sizeof one) < 0 && errno == EINTR) {
+    while (write(fd_, &one, sizeof one) < 0 && errno == EINTR) {
     }
   }
 
  private:
   int fd_;
+  std::atomic<bool> raised_ = false;
 };
 
 struct QosDelete {
@@ -154,6 +157,12 @@ struct Place {
   }
 };
 
+void put_behind_header(std::span<const std::byte> body, std::vector<std::byte>& out) {
+  out.resize(header.size() + body.size());
+  std::copy(header.begin(), header.end(), out.begin());
+  std::copy(body.begin(), body.end(), out.begin() + header.size());
+}
+
 Listener listener(EventFd& wake) { return Listener(dds_create_listener(&wake)); }
 
 }  // namespace
@@ -162,6 +171,13 @@ struct Writer::Impl {
   std::shared_ptr<void> port;
   Place place;
   Entity entity;
+  std::vector<std::byte> head = {};  ///< of a packet
+
+  bool send(std::span<const std::byte> first, std::span<const std::byte> rest) {
+    if (first.size() + rest.size() > sample_bytes_max) return false;
+    ddsi_serdata* const sample = make_sample(place.type, first, rest);
+    return sample && dds_writecdr(entity.get(), sample) == DDS_RETCODE_OK;
+  }
 };
 
 struct Reader::Impl {
@@ -185,6 +201,22 @@ struct Reader::Impl {
     next = 0;
     end = count > 0 ? static_cast<std::uint32_t>(count) : 0;
     return end > 0;
+  }
+  /// The next of which `use` makes something of the body.
+  template <class F>
+  bool take(SampleInfo* info, F&& use) {
+    while (next < end || fetch()) {
+      const std::uint32_t at = next++;
+      ddsi_serdata* const sample = samples[at];
+      const bool data = infos[at].valid_data && is_data(sample);
+      const auto body = data ? body_of(sample) : std::nullopt;
+      const bool used = body && use(*body);
+      if (used && info) *info = {infos[at].publication_handle, infos[at].source_timestamp};
+      release(sample);
+      if (used) return true;
+      if (data) ++malformed;
+    }
+    return false;
   }
 };
 
@@ -214,7 +246,7 @@ Writer Port::writer(const TopicId& topic, const std::string& partition) {
   const Listener changes = listener(impl_->wake);
   dds_lset_publication_matched(
       changes.get(), [](dds_entity_t, const dds_publication_matched_status_t, void* wake) {
-        EventFd::raise(wake);
+        static_cast<EventFd*>(wake)->raise();
       });
   Entity entity(dds_create_writer(place.group.get(), place.topic.get(), qos.get(), changes.get()),
                 "writer");
@@ -232,11 +264,16 @@ Reader Port::reader(const TopicId& topic, const std::string& partition) {
   place.group = Entity(dds_create_subscriber(participant, partition_qos(partition).get(), nullptr),
                        "subscriber");
   const Listener changes = listener(impl_->wake);
-  dds_lset_data_available(changes.get(), [](dds_entity_t, void* wake) { EventFd::raise(wake); });
+  dds_lset_data_available(changes.get(),
+                          [](dds_entity_t, void* wake) { static_cast<EventFd*>(wake)->raise(); });
   dds_lset_subscription_matched(
       changes.get(), [](dds_entity_t, const dds_subscription_matched_status_t, void* wake) {
-        EventFd::raise(wake);
+        static_cast<EventFd*>(wake)->raise();
       });
+  dds_lset_liveliness_changed(changes.get(),
+                              [](dds_entity_t, const dds_liveliness_changed_status_t, void* wake) {
+                                static_cast<EventFd*>(wake)->raise();
+                              });
   Entity entity(dds_create_reader(place.group.get(), place.topic.get(), qos.get(), changes.get()),
                 "reader");
   return Reader(std::make_unique<Reader::Impl>(impl_, std::move(place), std::move(entity)));
@@ -248,9 +285,25 @@ Writer& Writer::operator=(Writer&&) noexcept = default;
 Writer::~Writer() = default;
 
 bool Writer::write(std::span<const std::byte> bytes) {
-  if (bytes.size() > sample_bytes_max) return false;
-  ddsi_serdata* const sample = make_sample(impl_->place.type, bytes);
-  return sample && dds_writecdr(impl_->entity.get(), sample) == DDS_RETCODE_OK;
+  const bool written = write_later(bytes);
+  flush();
+  return written;
+}
+
+void Writer::flush() { dds_write_flush(impl_->entity.get()); }
+
+bool Writer::write_later(std::span<const std::byte> bytes) { return impl_->send(bytes, {}); }
+
+bool Writer::write_packet(const Envelope& envelope, std::span<const std::byte> message) {
+  const bool written = write_packet_later(envelope, message);
+  flush();
+  return written;
+}
+
+bool Writer::write_packet_later(const Envelope& envelope, std::span<const std::byte> message) {
+  require(message.size() >= header.size(), "write_packet: a message without its header");
+  pack(envelope, message.first(header.size()), impl_->head);
+  return impl_->send(impl_->head, message.subspan(header.size()));
 }
 
 int Writer::readers() const {
@@ -265,22 +318,18 @@ Reader& Reader::operator=(Reader&&) noexcept = default;
 Reader::~Reader() = default;
 
 bool Reader::take(std::vector<std::byte>& out, SampleInfo* info) {
-  while (impl_->next < impl_->end || impl_->fetch()) {
-    const std::uint32_t at = impl_->next++;
-    ddsi_serdata* const sample = impl_->samples[at];
-    const bool data = impl_->infos[at].valid_data && is_data(sample);
-    const auto body = data ? body_of(sample) : std::nullopt;
-    if (body) {
-      out.resize(header.size() + body->size());
-      std::copy(header.begin(), header.end(), out.begin());
-      std::copy(body->begin(), body->end(), out.begin() + header.size());
-      if (info) *info = {impl_->infos[at].publication_handle, impl_->infos[at].source_timestamp};
-    }
-    release(sample);
-    if (body) return true;
-    if (data) ++impl_->malformed;
-  }
-  return false;
+  return impl_->take(info, [&](std::span<const std::byte> body) {
+    put_behind_header(body, out);
+    return true;
+  });
+}
+
+bool Reader::take_packet(Envelope& envelope, std::vector<std::byte>& message, SampleInfo* info) {
+  return impl_->take(info, [&](std::span<const std::byte> body) {
+    if (!read_envelope(body, envelope)) return false;
+    put_behind_header(body.subspan(envelope_bytes), message);
+    return true;
+  });
 }
 
 // Not what DDS calls liveliness: once it lapsed, Cyclone takes a writer for alive again only when

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "net/live/envelope.hpp"
 #include "net/live/topics.hpp"
 
 namespace hearsay::live {
@@ -35,6 +36,13 @@ class Writer {
   /// copied, and not looked at: readers drop what is malformed. Blocks for up to a second while
   /// readers that are there do not keep up; false if it could not be sent, then or at all.
   bool write(std::span<const std::byte> bytes);
+  /// The same, but it may wait for others to go with it: until flush() or write(), or until they
+  /// fill a datagram. Many small samples at once go several times as fast.
+  bool write_later(std::span<const std::byte> bytes);
+  void flush();
+  /// What pack() would make of the two, with a copy less. @throws BrokenInvariant as pack().
+  bool write_packet(const Envelope& envelope, std::span<const std::byte> message);
+  bool write_packet_later(const Envelope& envelope, std::span<const std::byte> message);
   /// Readers of the topic that what is written now will reach. A reader may know of the writer a
   /// little before: what is written in between does not reach it.
   int readers() const;
@@ -56,6 +64,9 @@ class Reader {
   /// The next sample, with its header (little-endian, without padding), in place of what `out`
   /// held; false if there is none. Whoever does not take for long makes writers wait.
   bool take(std::vector<std::byte>& out, SampleInfo* info = nullptr);
+  /// The same, of a topic whose samples begin with an envelope (all of the air): `message` is what
+  /// pack() took, or for OctetsPacket all behind the envelope.
+  bool take_packet(Envelope& envelope, std::vector<std::byte>& message, SampleInfo* info = nullptr);
   /// Writers of the topic that are there. Of a process that was killed or is stopped they are not
   /// after two seconds without a sign of life (programs of others may have chosen otherwise).
   int writers_alive() const;

@@ -8,29 +8,74 @@
 #include <dds/ddsrt/heap.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
+#include <iterator>
 #include <memory>
+#include <mutex>
+#include <utility>
+#include <vector>
 
 namespace hearsay::live {
 namespace {
 
 constexpr std::size_t header_bytes = 4;
 
+/// Where the bytes of samples are. What one thread gives back another takes: the C library would
+/// return large pieces to the system each time, and have them filled with zeros anew.
+class Storage {
+ public:
+  struct Piece {
+    std::unique_ptr<std::byte[]> bytes;
+    std::size_t size = 0;
+  };
+  Piece take(std::size_t size) {
+    {
+      const std::lock_guard lock(guard_);
+      for (auto at = free_.rbegin(); at != free_.rend(); ++at) {
+        if (at->size < size || at->size > 2 * size) continue;
+        Piece piece = std::move(*at);
+        free_.erase(std::next(at).base());
+        free_bytes_ -= piece.size;
+        return piece;
+      }
+    }
+    return {std::make_unique_for_overwrite<std::byte[]>(size), size};
+  }
+  void give(Piece piece) {
+    if (piece.size < size_min) return;
+    const std::lock_guard lock(guard_);
+    if (free_.size() == pieces_max || free_bytes_ + piece.size > bytes_max) return;
+    free_bytes_ += piece.size;
+    free_.push_back(std::move(piece));
+  }
+
+ private:
+  static constexpr std::size_t size_min = 4096;  ///< below, the C library is good at it
+  static constexpr std::size_t pieces_max = 64;
+  static constexpr std::size_t bytes_max = std::size_t{16} << 20;
+  std::mutex guard_;
+  std::vector<Piece> free_;
+  std::size_t free_bytes_ = 0;
+};
+
 struct RawType {
   ddsi_sertype base;  // first, for Cyclone
   const dds_topic_descriptor_t* descriptor;
+  std::shared_ptr<Storage> storage;
 };
 
 /// Header and body, from four bytes behind a multiple of 8 on, so that the body is aligned; and up
 /// to three bytes more, since what goes over the wire is a multiple of 4.
 struct RawSample {
-  ddsi_serdata base;  // first, for Cyclone
-  std::unique_ptr<std::byte[]> storage;
+  ddsi_serdata base;                 // first, for Cyclone
+  std::shared_ptr<Storage> storage;  // outlives the type, if need be
+  Storage::Piece piece;
   std::size_t wire_bytes;  // multiple of 4
   std::size_t body_bytes;
   bool sound;
 
-  std::byte* wire() const { return storage.get() + header_bytes; }
+  std::byte* wire() const { return piece.bytes.get() + header_bytes; }
   std::byte* body() const { return wire() + header_bytes; }
 };
 
@@ -44,7 +89,8 @@ RawSample* make(const ddsi_sertype* type, ddsi_serdata_kind kind, std::size_t by
   auto* const sample = new RawSample();
   ddsi_serdata_init(&sample->base, type, kind);
   sample->wire_bytes = (bytes + 3) / 4 * 4;
-  sample->storage = std::make_unique_for_overwrite<std::byte[]>(header_bytes + sample->wire_bytes);
+  sample->storage = raw(type).storage;
+  sample->piece = sample->storage->take(header_bytes + sample->wire_bytes);
   std::fill_n(sample->wire() + bytes, sample->wire_bytes - bytes, std::byte{0});
   return sample;
 }
@@ -100,7 +146,7 @@ ddsi_serdata* from_ser_iov(const ddsi_sertype* type, ddsi_serdata_kind kind,
   std::size_t end = 0;
   for (std::size_t i = 0; i < count && end < size; ++i) {
     const std::size_t length = std::min<std::size_t>(parts[i].iov_len, size - end);
-    std::memcpy(sample->wire() + end, parts[i].iov_base, length);
+    if (length > 0) std::memcpy(sample->wire() + end, parts[i].iov_base, length);
     end += length;
   }
   if (end == size && kind == SDK_DATA) settle(*sample, size);
@@ -149,7 +195,11 @@ std::size_t print(const ddsi_sertype*, const ddsi_serdata*, char* out, std::size
 void get_keyhash(const ddsi_serdata*, ddsi_keyhash* out, bool) {
   std::memset(out->value, 0, sizeof out->value);
 }
-void free_sample(ddsi_serdata* sample) { delete &raw(sample); }
+void free_sample(ddsi_serdata* sample) {
+  RawSample& bytes = raw(sample);
+  bytes.storage->give(std::move(bytes.piece));
+  delete &bytes;
+}
 
 constexpr ddsi_serdata_ops make_sample_ops() {
   ddsi_serdata_ops ops{};
@@ -241,15 +291,19 @@ ddsi_sertype* make_raw_type(const dds_topic_descriptor_t& descriptor) {
                           DDSI_SERTYPE_FLAG_TOPICKIND_NO_KEY);
   type->base.allowed_data_representation = DDS_DATA_REPRESENTATION_FLAG_XCDR1;
   type->descriptor = &descriptor;
+  type->storage = std::make_shared<Storage>();
   return &type->base;
 }
 void release(ddsi_sertype* type) { ddsi_sertype_unref(type); }
 
-ddsi_serdata* make_sample(const ddsi_sertype* type, std::span<const std::byte> bytes) {
-  ddsrt_iovec_t whole{};
-  whole.iov_base = const_cast<std::byte*>(bytes.data());
-  whole.iov_len = bytes.size();
-  return from_ser_iov(type, SDK_DATA, 1, &whole, bytes.size());
+ddsi_serdata* make_sample(const ddsi_sertype* type, std::span<const std::byte> first,
+                          std::span<const std::byte> rest) {
+  std::array<ddsrt_iovec_t, 2> parts{};
+  parts[0].iov_base = const_cast<std::byte*>(first.data());
+  parts[0].iov_len = first.size();
+  parts[1].iov_base = const_cast<std::byte*>(rest.data());
+  parts[1].iov_len = rest.size();
+  return from_ser_iov(type, SDK_DATA, parts.size(), parts.data(), first.size() + rest.size());
 }
 
 std::optional<std::span<const std::byte>> body_of(const ddsi_serdata* sample) {

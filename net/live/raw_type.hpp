@@ -18,9 +18,10 @@ namespace hearsay::live {
 ddsi_sertype* make_raw_type(const dds_topic_descriptor_t& descriptor);
 void release(ddsi_sertype* type);
 
-/// A sample for dds_writecdr(), which takes it over. The bytes are copied: header of four bytes and
-/// body. Null if there is no header.
-ddsi_serdata* make_sample(const ddsi_sertype* type, std::span<const std::byte> bytes);
+/// A sample for dds_writecdr(), which takes it over. The bytes are copied, `rest` behind `first`:
+/// header of four bytes and body. Null if there is no header.
+ddsi_serdata* make_sample(const ddsi_sertype* type, std::span<const std::byte> first,
+                          std::span<const std::byte> rest);
 
 /// The body of a sample, as long as the sample lives: little-endian, without padding at its end.
 /// Nothing if the bytes are no sample of the type.

@@ -1,14 +1,15 @@
 // The topics of a fleet: names, types and quality of service. What travels between two programs is
 // in net/live/idl/{air,live}.idl.
 //
-//   hearsay_hello        Hello        agent → world       reliable, all kept
-//   hearsay_welcome      Welcome      world → agents      the same
-//   hearsay_order        Frame        world → agent       the same
-//   hearsay_answer       Frame        agent → world       the same
-//   hearsay_clock        Clock        world → agents      reliable, the last kept for who comes
-//   later hearsay_measurement  Measurement  world → agent       reliable, all kept hearsay_truth
-//   Truth        world → whoever     the same hearsay_report       Report       agent → world the
-//   same hearsay_air_…        packets      agent → agents      the same
+//   hearsay_hello        Hello        agent → world    reliable, all kept
+//   hearsay_welcome      Welcome      world → agents   the same
+//   hearsay_order        Frame        world → agent    the same
+//   hearsay_answer       Frame        agent → world    the same
+//   hearsay_clock        Clock        world → agents   reliable, the last kept for who comes later
+//   hearsay_measurement  Measurement  world → agent    as hello
+//   hearsay_truth        Truth        world → whoever  the same
+//   hearsay_report       Report       agent → world    the same
+//   hearsay_air_…        packets      agent → agents   the same
 //
 // A packet's topic is named by its kind, as agents name it, '-' as '_'. What a kind's messages are
 // made of depends on what beliefs are about, so that one name does not do for all of them:
@@ -25,7 +26,8 @@
 //   hearsay_air_KIND                 OctetsPacket           any other kind
 //
 // A fleet is a DDS partition: "FLEET" (hello, welcome, clock, truth), "FLEET.3" (what is between
-// the world and agent 3), "FLEET.air" (packets from agent to agent, without a world's radio).
+// the world and agent 3), "FLEET.3.said" (what agent 3 hands to the world's radio), "FLEET.air"
+// (packets from agent to agent, without a world's radio).
 #pragma once
 
 #include <cstddef>

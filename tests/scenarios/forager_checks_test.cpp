@@ -92,7 +92,11 @@ TEST_F(ForagerChecks, NoOtherWorldGoesWithIt) {
 }
 
 TEST_F(ForagerChecks, APlanIsRead) {
-  EXPECT_EQ(changed("file = \"floor.txt\"", "file = \"flor.txt\""), "flor.txt: no such file");
+  EXPECT_EQ(changed("file = \"floor.txt\"", "file = \"flor.txt\""),
+            "s.toml:3: world.plan.file: there is no file \"flor.txt\"");
+  EXPECT_EQ(changed("file = \"floor.txt\"", "file = \"flor.png\""),
+            "s.toml:3: world.plan.file: there is no file \"flor.png\"");
+  EXPECT_EQ(changed("file = \"floor.txt\"", "file = \".\""), ".: not a file");
   EXPECT_EQ(changed("file = \"floor.txt\"\n", ""),
             "s.toml:2: world.plan.file: missing; which drawing in text, or bitmap in PNG?");
   write("floor.txt", with(floor_text, "C", "B"));
@@ -294,7 +298,6 @@ TEST_F(ForagerChecks, ATaskIsOfKnownEvents) {
   EXPECT_EQ(task("events = [\"B\"]"),
             "s.toml:11: agents[0].task.events: one event alone needs respawn = true, or the robot "
             "is there for ever");
-  EXPECT_EQ(task("events = [\"B\"], respawn = true"), "no error");
   EXPECT_EQ(
       task("events = [\"B\", \"X\"]"),
       "s.toml:11: agents[0].task.events[1] = \"X\": unknown place of the plan; allowed: A, B, C");
@@ -304,6 +307,28 @@ TEST_F(ForagerChecks, ATaskIsOfKnownEvents) {
   for (char c = 'a'; c <= 'q'; ++c) many += std::string(c == 'a' ? "" : ", ") + '"' + c + '"';
   EXPECT_EQ(task("events = [" + many + "]"),
             "s.toml:11: agents[0].task.events: has 17 events; at most 16 are allowed");
+}
+
+TEST_F(ForagerChecks, WhoIsCarriedBackLaysWhatItHasCompleted) {
+  const auto carried = [](const std::string& events, const std::string& trails) {
+    return error(with(with(with(scenario, "[\"A\", \"B\"]", events + ", respawn = true"),
+                           "parameters = \"lost-2002\"", trails),
+                      "policy = \"at-once\"", "policy = \"at-event\""));
+  };
+  const std::string refused =
+      "s.toml:11: agents[0].task.respawn = true: needs agents.trails.laying = \"completed\": "
+      "crumbs "
+      "laid at once lead back to the last event, and who is carried away from there lays none; "
+      "found \"at-once\"";
+  for (const char* events : {"[\"B\"]", "[\"A\", \"B\"]"}) {
+    EXPECT_EQ(carried(events, ""), refused + ", by parameters \"lost-2002\"");
+    EXPECT_EQ(carried(events, "parameters = \"thesis-2019-code\", laying = \"at-once\""), refused);
+    EXPECT_EQ(carried(events, "laying = \"completed\""), "no error");
+    EXPECT_EQ(carried(events, "parameters = \"thesis-2019-text\""), "no error");
+    // These lay nothing anyway.
+    EXPECT_EQ(carried(events, "navigation = \"map\""), "no error");
+    EXPECT_EQ(carried(events, "navigation = \"explore\""), "no error");
+  }
 }
 
 TEST_F(ForagerChecks, TalkIsOfCrumbs) {

@@ -154,6 +154,29 @@ TEST_F(ForagerLife, RespawnPutsEachBackToItsStart) {
   }
 }
 
+TEST_F(ForagerLife, WhatWasDrivenForATrailThatGrewTooLongIsPartOfNoTrip) {
+  series_.push_back("trip_length_m");
+  const std::string respawned =
+      with(with(team, "[\"A\", \"B\"]", "[\"B\"], respawn = true"), "trails = {",
+           "trails = { laying = \"completed\", interval_s = 2, trail_crumbs_max = 30, ");
+  const Values values = run(with(respawned, "at-once", "at-event"));
+  double abandoned = 0.0, trips = 0.0;
+  for (AgentId id = 0; id < 3; ++id) {
+    abandoned += values.scalar(id, "trails_abandoned");
+    const std::vector<double> durations_s = values.by_trip(id, "trip_duration_s");
+    ASSERT_EQ(values.scalar(id, "trips"), static_cast<double>(durations_s.size()));
+    for (const double duration_s : durations_s) EXPECT_LE(duration_s, 31 * 2.0) << id;
+    trips += static_cast<double>(durations_s.size());
+    if (values.scalar(id, "trails_abandoned") == 0.0) continue;
+    // A trail that is given up was laid for a minute, on the move.
+    double trips_m = 0.0;
+    for (const double length_m : values.by_trip(id, "trip_length_m")) trips_m += length_m;
+    EXPECT_GE(values.scalar(id, "distance_driven_m"), trips_m + 5.0) << id;
+  }
+  EXPECT_GE(abandoned, 1.0);
+  EXPECT_GE(trips, 3.0);
+}
+
 /// With respawn and without: a first trip ends, others' have to.
 class ForagerWaits : public ForagerLife, public testing::WithParamInterface<std::string> {};
 

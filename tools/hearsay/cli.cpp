@@ -238,6 +238,9 @@ void add_agent(CLI::App& app, const Catalog& catalog, Action& action) {
   verb->add_option("--fleet", options->fleet, "Name of the fleet (hearsay)");
   verb->add_option("--id", options->agent, "Which agent, from 0 in file order")->required();
   add_patience(verb, *options, "a world");
+  verb->add_option(
+      "--memory", options->memory,
+      "File that keeps what the agent remembers, for the process that takes its place");
   verb->callback([&action, options, &catalog] {
     action = [options, &catalog] { return program::live_agent(*options, catalog); };
   });

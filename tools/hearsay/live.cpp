@@ -16,6 +16,12 @@
 namespace hearsay::program {
 namespace {
 
+/// What agents tell each other past the world, no world can put in order.
+void require_radio_fits(const LiveVerb& verb) {
+  if (!verb.lockstep || verb.radio != "direct") return;
+  throw InputError("--radio direct: not with --lockstep, which needs the world's radio");
+}
+
 Scenario scenario_of(const LiveVerb& verb, const Catalog& catalog) {
   std::vector<Override> overrides;
   for (const std::string& text : verb.set) overrides.push_back(parse_set(text));
@@ -69,22 +75,22 @@ void print_timing(const fleet::WorldResult& result, const LiveVerb& verb) {
 }  // namespace
 
 int live_world(const LiveVerb& verb, const Catalog& catalog) {
+  require_radio_fits(verb);
   const Scenario as_given = scenario_of(verb, catalog);
   const Scenario scenario = as_it_is_lived(as_given, verb);
   const auto prepared = prepared_of(scenario, catalog);
   const std::uint64_t seed = verb.seed.value_or(scenario.seed);
   if (!verb.out.empty()) probe_output(verb.out);
   say_where_it_listens(verb);
-  fleet::WorldResult result = fleet::run_world(prepared, catalog,
-                                               {.fleet = fleet_of(verb),
-                                                .seed = seed,
-                                                .lockstep = verb.lockstep,
-                                                .speed = verb.speed,
-                                                .direct = verb.radio == "direct",
-                                                .patience_s = verb.patience_s,
-                                                .scenario_hash = scenario_hash(as_given),
-                                                .version = version_text()},
-                                               status_printer(verb));
+  const fleet::WorldOptions options{.fleet = fleet_of(verb),
+                                    .seed = seed,
+                                    .lockstep = verb.lockstep,
+                                    .speed = verb.speed,
+                                    .direct = verb.radio == "direct",
+                                    .patience_s = verb.patience_s,
+                                    .scenario_hash = scenario_hash(as_given),
+                                    .version = version_text()};
+  fleet::WorldResult result = fleet::run_world(prepared, catalog, options, status_printer(verb));
   if (!result.trouble.empty()) {
     fmt::print(stderr, "hearsay world: {}\n", result.trouble);
     return exit_failed;
@@ -104,20 +110,21 @@ int live_agent(const LiveVerb& verb, const Catalog& catalog) {
   const Scenario scenario = scenario_of(verb, catalog);
   const auto prepared = prepared_of(scenario, catalog);
   say_where_it_listens(verb);
-  const std::string trouble = fleet::run_agent(prepared, catalog,
-                                               {.fleet = fleet_of(verb),
-                                                .id = verb.agent,
-                                                .direct = verb.radio == "direct",
-                                                .patience_s = verb.patience_s,
-                                                .scenario_hash = scenario_hash(scenario),
-                                                .version = version_text()},
-                                               status_printer(verb));
+  const fleet::AgentOptions options{.fleet = fleet_of(verb),
+                                    .id = verb.agent,
+                                    .direct = verb.radio == "direct",
+                                    .patience_s = verb.patience_s,
+                                    .memory = verb.memory,
+                                    .scenario_hash = scenario_hash(scenario),
+                                    .version = version_text()};
+  const std::string trouble = fleet::run_agent(prepared, catalog, options, status_printer(verb));
   if (trouble.empty()) return exit_done;
   fmt::print(stderr, "hearsay agent {}: {}\n", verb.agent, trouble);
   return exit_failed;
 }
 
 int live_fleet(const LiveVerb& verb, const Catalog& catalog) {
+  require_radio_fits(verb);
   // Told here, once, and not by each process.
   const Scenario scenario = scenario_of(verb, catalog);
   const auto prepared = prepared_of(scenario, catalog);

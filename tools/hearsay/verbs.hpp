@@ -92,6 +92,7 @@ struct LiveVerb {
   bool lockstep = false;
   double speed = 1.0;
   double patience_s = 30.0;
+  std::string memory;  ///< agent: file; empty: none
   std::string out;
   bool digest = false, json = false;
   bool status = false;  ///< lines for `hearsay live`

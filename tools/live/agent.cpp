@@ -8,6 +8,7 @@
 
 #include "scenarios/solo.hpp"
 #include "tools/live/frame_line.hpp"
+#include "tools/live/memory_file.hpp"
 #include "tools/live/own_time.hpp"
 
 namespace hearsay::fleet {
@@ -17,7 +18,7 @@ using namespace std::chrono_literals;
 
 /// Says hello until it is answered.
 std::optional<live::Welcome> join(live::Port& port, Reactor& reactor, const AgentOptions& options,
-                                  std::string& trouble) {
+                                  bool remembers, std::string& trouble) {
   const std::string partition = live::fleet_partition(options.fleet.fleet);
   live::Writer hellos = port.writer(live::hello_topic(), partition);
   live::Reader welcomes = port.reader(live::welcome_topic(), partition);
@@ -26,7 +27,8 @@ std::optional<live::Welcome> join(live::Port& port, Reactor& reactor, const Agen
   const live::Hello hello{.agent = static_cast<std::uint32_t>(options.id),
                           .process = (std::uint64_t{entropy()} << 32) | entropy() | 1,
                           .scenario = options.scenario_hash,
-                          .version = options.version};
+                          .version = options.version,
+                          .remembers = remembers};
   std::vector<std::byte> bytes;
   const WallTime until = WallClock::now() + wall(options.patience_s);
   while (!reactor.stopped()) {
@@ -54,16 +56,18 @@ std::optional<live::Welcome> join(live::Port& port, Reactor& reactor, const Agen
 
 std::string in_lockstep(const std::shared_ptr<const PreparedScenario>& prepared,
                         const Catalog& catalog, const AgentOptions& options,
-                        const live::Welcome& welcome, FrameSuperior& superior, Reactor& reactor) {
+                        const live::Welcome& welcome, FrameSuperior& superior, Reactor& reactor,
+                        remote::MemoryStore* memory) {
   const std::string gone = fmt::format("the world of fleet '{}' is gone", options.fleet.fleet);
   remote::Order first;
   if (!superior.wait(first)) return reactor.stopped() ? "" : gone;
   if (first.kind == remote::OrderKind::dismiss) return {};
   const int subjects = remote_options(*prepared, options.id).subjects;
   for (;;) {
-    remote::RemoteWorld world(
-        superior, first,
-        {.ledgers = prepared->scenario.record.ledger == "on", .subjects = subjects});
+    remote::RemoteWorld world(superior, first,
+                              {.ledgers = prepared->scenario.record.ledger == "on",
+                               .subjects = subjects,
+                               .memory = memory});
     Solo solo(prepared, catalog, world, world,
               {.id = options.id,
                .seed = welcome.seed,
@@ -89,13 +93,19 @@ std::string run_agent(const std::shared_ptr<const PreparedScenario>& prepared,
         prepared->scenario.file, 0,
         fmt::format("there is no agent {}: the scenario has {}, from 0 on", options.id, agents));
   }
+  std::optional<MemoryFile> memory;
+  if (!options.memory.empty()) {
+    memory.emplace(options.memory,
+                   fmt::format("agent {} of scenario {}", options.id, options.scenario_hash));
+  }
   live::Port port({.fleet = options.fleet.fleet,
                    .interface = options.fleet.interface,
                    .domain = options.fleet.domain});
   Reactor reactor(port);
   status("looks for its world");
   std::string trouble;
-  const std::optional<live::Welcome> welcome = join(port, reactor, options, trouble);
+  const std::optional<live::Welcome> welcome =
+      join(port, reactor, options, memory && memory->remembers(), trouble);
   if (!welcome) return trouble;
   const std::string partition =
       live::agent_partition(options.fleet.fleet, static_cast<std::uint32_t>(options.id));
@@ -115,9 +125,10 @@ std::string run_agent(const std::shared_ptr<const PreparedScenario>& prepared,
     status(fmt::format("{:.1f} s", order.now.seconds()));
   });
   if (welcome->lockstep) {
-    return in_lockstep(prepared, catalog, options, *welcome, superior, reactor);
+    return in_lockstep(prepared, catalog, options, *welcome, superior, reactor,
+                       memory ? &*memory : nullptr);
   }
-  OwnTime own_time(prepared, options, *welcome, port, reactor);
+  OwnTime own_time(prepared, options, *welcome, port, reactor, memory ? &*memory : nullptr);
   return own_time.serve(catalog, orders, status);
 }
 

@@ -28,7 +28,7 @@ class FrameLine final : public remote::Line {
 
   Member& member_;
   Reactor& reactor_;
-  Presence presence_;
+  Presence presence_{agent_grace_s};
   live::Frame out_, in_;
   std::vector<std::byte> bytes_;
 };
@@ -50,7 +50,7 @@ class FrameSuperior final : public remote::Superior {
   live::Writer& answers_;
   Reactor& reactor_;
   std::function<void(const remote::Order&)> progress_;
-  Presence presence_;
+  Presence presence_{world_grace_s};
   live::Frame out_, in_;
   std::vector<std::byte> bytes_;
 };

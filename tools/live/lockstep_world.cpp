@@ -81,7 +81,8 @@ void LockstepWorld::let_join(Run& run) {
     off_[i] = false;
     run.set_reachable(id, true);
     Simulation& simulation = run.simulation();
-    simulation.record().event(simulation.now(), id, "joined again", "another process");
+    simulation.record().event(simulation.now(), id, "joined again",
+                              roster_.member(id).remembers ? "with its memory" : "without memory");
     simulation.schedule(simulation.now(), Phase::world, [&simulation, id, agent = agents_[i]] {
       simulation.acting_for(id);
       agent->join();

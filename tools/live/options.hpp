@@ -31,6 +31,7 @@ struct AgentOptions {
   AgentId id = 0;
   bool direct = false;
   double patience_s = 30.0;  ///< how long it waits for a world
+  std::string memory;        ///< file that keeps what it remembers; empty: none
   std::string scenario_hash;
   std::string version;
 };

@@ -34,11 +34,13 @@ std::string air_in_partition(const AgentOptions& options) {
 }  // namespace
 
 OwnTime::OwnTime(std::shared_ptr<const PreparedScenario> prepared, const AgentOptions& options,
-                 const live::Welcome& welcome, live::Port& port, Reactor& reactor)
+                 const live::Welcome& welcome, live::Port& port, Reactor& reactor,
+                 remote::MemoryStore* memory)
     : prepared_(std::move(prepared)),
       options_(options),
       welcome_(welcome),
       reactor_(reactor),
+      memory_(memory),
       tongue_(tongue_of(*prepared_, options.id)),
       air_out_(port, air_out_partition(options)),
       air_in_(port, air_in_partition(options), tongues_of(*prepared_)),
@@ -68,6 +70,7 @@ std::string OwnTime::serve(const Catalog& catalog, live::Reader& orders,
       take_measurements();
       take_packets();
       if (solo_->simulation().failed()) return failure();
+      if (memory_) memory_->save(solo_->agent());
     }
     if (presence_.gone(orders.writers_alive() > 0)) {
       return fmt::format("the world of fleet '{}' is gone", options_.fleet.fleet);
@@ -126,6 +129,7 @@ void OwnTime::begin(const Catalog& catalog, const Order& order) {
   solo_ = std::make_unique<Solo>(prepared_, catalog, radio, witness, own);
   at_once([this, &order] {
     solo_->agent().start();
+    if (memory_ && memory_->recall(solo_->agent())) return;
     for (std::uint32_t life = 0; life < order.lives; ++life) solo_->agent().on_up(true);
   });
 }

@@ -11,7 +11,7 @@
 
 #include "agents/catalog.hpp"
 #include "agents/estimator_witness.hpp"
-#include "agents/remote/protocol.hpp"
+#include "agents/remote/remote_world.hpp"
 #include "net/live/messages.hpp"
 #include "scenarios/solo.hpp"
 #include "tools/live/air.hpp"
@@ -25,7 +25,8 @@ class OwnTime final : private RadioPort, private EstimatorWitness, private Recor
  public:
   /// All outlive this.
   OwnTime(std::shared_ptr<const PreparedScenario> prepared, const AgentOptions& options,
-          const live::Welcome& welcome, live::Port& port, Reactor& reactor);
+          const live::Welcome& welcome, live::Port& port, Reactor& reactor,
+          remote::MemoryStore* memory);
   ~OwnTime() override;
 
   /// Until it is dismissed or asked to stop. @return what went wrong, or nothing.
@@ -70,7 +71,8 @@ class OwnTime final : private RadioPort, private EstimatorWitness, private Recor
   const AgentOptions& options_;
   live::Welcome welcome_;
   Reactor& reactor_;
-  Presence presence_;  // of the world
+  remote::MemoryStore* memory_;       // null: it has none
+  Presence presence_{world_grace_s};  // of the world
   Tongue tongue_;
   AirOut air_out_;
   AirIn air_in_;

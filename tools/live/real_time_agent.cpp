@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "sim/kernel/error.hpp"
+
 namespace hearsay::fleet {
 namespace {
 
@@ -105,7 +107,7 @@ bool RealTimeAgent::take() {
       ++dropped_;
       continue;
     }
-    heard_ = envelope.number;
+    heard_ = parcel_.envelope.number;
     say(parcel_);
   }
   return any;
@@ -128,7 +130,18 @@ void RealTimeAgent::say(const Parcel& parcel) {
   }
   if (parcel.envelope.tick >= 0) packet.tick = static_cast<std::uint64_t>(parcel.envelope.tick);
   packet.subject = parcel.envelope.subject;
-  context().send(packet);
+  if (member_.ours) {
+    context().send(packet);
+    return;
+  }
+  // Another's program may say more than its radio can ever take; that is not the run's fault.
+  try {
+    context().send(packet);
+  } catch (const InputError&) {
+    ++dropped_;
+  } catch (const BrokenInvariant&) {
+    ++dropped_;
+  }
 }
 
 bool RealTimeAgent::take_report() {
@@ -161,7 +174,8 @@ bool RealTimeAgent::take_report() {
 
 void RealTimeAgent::record(const live::Row& row) {
   Record& record = context().simulation().record();
-  const Time time = std::min(Time::nanoseconds(row.now_ns), context().now());
+  const Time time =
+      std::clamp(Time::nanoseconds(row.now_ns), Time::nanoseconds(0), context().now());
   switch (row.kind) {
     case live::Row::Kind::scalar:
       return record.scalar(context().id(), record.name(row.name), row.value);

@@ -73,7 +73,7 @@ class RealTimeAgent final : public remote::StandIn {
   void ask(remote::OrderKind kind, double wait_s);
 
   Member& member_;
-  Presence presence_;
+  Presence presence_{call_grace_s};
   Reactor& reactor_;
   Options options_;
   Beliefs believer_;

@@ -113,7 +113,9 @@ void RealTimeWorld::look_after(Run& run) {
     }
     if (new_here) {
       roster_.member(id).here = true;
-      simulation.record().event(simulation.now(), id, "joined again", "another process");
+      simulation.record().event(
+          simulation.now(), id, "joined again",
+          roster_.member(id).remembers ? "with its memory" : "without memory");
       run.set_reachable(id, true);
       agent.start();
     }

@@ -9,6 +9,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
+/// A process that was killed seems alive for as long.
+constexpr auto last_breath = 3s;
+
 Member make_member(live::Port& port, std::uint32_t agent) {
   const std::string partition = live::agent_partition(port.fleet(), agent);
   return {.orders = port.writer(live::order_topic(), partition),
@@ -49,7 +52,8 @@ std::string Roster::gather() {
 std::vector<AgentId> Roster::update(std::int64_t now_ns) {
   live::Hello hello;
   while (hellos_.take(bytes_)) {
-    if (live::decode(bytes_, hello)) answer(hello, objection(hello), now_ns);
+    if (!live::decode(bytes_, hello) || must_wait(hello)) continue;
+    answer(hello, objection(hello), now_ns);
   }
   std::vector<AgentId> arrived;
   for (std::size_t i = 0; i < members_.size(); ++i) {
@@ -60,6 +64,17 @@ std::vector<AgentId> Roster::update(std::int64_t now_ns) {
     arrived.push_back(static_cast<AgentId>(i));
   }
   return arrived;
+}
+
+bool Roster::must_wait(const live::Hello& hello) {
+  if (hello.agent >= members_.size()) return false;
+  Member& member = members_[hello.agent];
+  if (member.process == hello.process || !member.here || !member.alive()) return false;
+  if (member.heir != hello.process) {
+    member.heir = hello.process;
+    member.heir_since = WallClock::now();
+  }
+  return WallClock::now() < member.heir_since + last_breath;
 }
 
 std::string Roster::objection(const live::Hello& hello) {
@@ -100,6 +115,7 @@ void Roster::answer(const live::Hello& hello, const std::string& objection, std:
     Member& member = members_[hello.agent];
     if (member.process != hello.process) member.here = false;
     member.process = hello.process;
+    member.remembers = hello.remembers;
     member.ours = hello.version.starts_with("hearsay ");
   } else if (refused_last_ != hello.process) {
     ++refused_;

@@ -19,6 +19,9 @@ struct Member {
   live::Writer measurements;
   live::Reader reports;
   std::uint64_t process = 0;  ///< that was welcome last; 0: nobody came yet
+  std::uint64_t heir = 0;     ///< another that wants to take its place, …
+  WallTime heir_since;        ///< … since then
+  bool remembers = false;     ///< it says that it kept its memory
   bool ours = false;          ///< a `hearsay agent`: it obeys orders
   bool here = false;          ///< it is heard, and hears
 
@@ -46,6 +49,8 @@ class Roster {
 
  private:
   std::string objection(const live::Hello& hello);
+  /// Somebody is there already, who may have died a moment ago: time will show.
+  bool must_wait(const live::Hello& hello);
   void answer(const live::Hello& hello, const std::string& objection, std::int64_t now_ns);
 
   Reactor& reactor_;

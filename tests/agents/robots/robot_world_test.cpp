@@ -298,6 +298,43 @@ TEST_F(Floor, StartsAreDrawnEvenlyOverTheDiscAndHeadingsOverTheCircle) {
   for (const int count : {inner, above, ahead}) EXPECT_NEAR(count, 0.5 * n, 4.0 * sigma);
 }
 
+TEST_F(Floor, WhetherRoomIsFoundIsNoMatterOfLuck) {
+  // A closet in the corner of a large floor: one draw in 1e10 lies in it.
+  const std::vector<plan::Segment> walls = {{{1.0, 0.0}, {1.0, 1.0}}, {{0.0, 1.0}, {1.0, 1.0}}};
+  world({.plan = room(40.0, 40.0, walls), .barriers = {}, .sources = {}, .floor = {}});
+  const RobotWorld::Start closet{.at = plan::Point{0.5, 0.5}, .scatter_m = 1e5, .heading_rad = 1.5};
+  const drive::Pose first = world_->pose(world_->add(closet, draws(1)));
+  EXPECT_EQ(first.x_m, 0.5);
+  EXPECT_EQ(first.y_m, 0.5);
+  EXPECT_EQ(first.heading_rad, 1.5);
+  EXPECT_THROW(world_->add(closet, draws(2)), InputError) << "there is room for one";
+  EXPECT_FALSE(world_->carry(0, closet, draws(3))) << "is not looked for so hard at each step";
+  // In a corridor two metres wide, one draw in 1e5: it fills up to its ends.
+  const std::vector<plan::Segment> sides = {{{0.0, 19.0}, {40.0, 19.0}},
+                                            {{0.0, 21.0}, {40.0, 21.0}}};
+  world({.plan = room(40.0, 40.0, sides), .barriers = {}, .sources = {}, .floor = {}});
+  for (std::uint64_t n = 0; n < 12; ++n) {
+    const drive::Pose pose =
+        world_->pose(world_->add({.at = plan::Point{20.0, 20.0}, .scatter_m = 1200.0}, draws(n)));
+    EXPECT_LE(std::fabs(pose.y_m - 20.0), 1.0 - radius_m);
+  }
+}
+
+TEST_F(Floor, LookingForRoomKeepsWithinTheDisc) {
+  world({.plan = room(20.0, 20.0), .barriers = {}, .sources = {}, .floor = {}, .tries = 0});
+  const RobotWorld::Start start{.at = plan::Point{1.0, 1.0}, .scatter_m = 2.0};
+  std::vector<drive::Pose> found;
+  const auto fill = [&] {
+    while (true) found.push_back(world_->pose(world_->add(start, draws(found.size()))));
+  };
+  EXPECT_THROW(fill(), InputError);
+  EXPECT_GE(found.size(), 8U);
+  double most_m = 0.0;
+  for (const drive::Pose& pose : found) most_m = std::max(most_m, apart(pose, *start.at));
+  EXPECT_LE(most_m, 2.0);
+  EXPECT_GE(most_m, 1.5);
+}
+
 TEST_F(Floor, WhereThereIsNoRoomNobodyStarts) {
   world({.plan = room(4.0, 4.0), .barriers = {}, .sources = {}, .floor = {}});
   robot_at(2.0, 2.0);

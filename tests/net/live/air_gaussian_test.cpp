@@ -1,8 +1,6 @@
 // What beliefs cost on the air is the size of the types of air.idl, byte for byte.
 #include <gtest/gtest.h>
 
-#include <cstring>
-
 #include "filters/gaussian/message_forms.hpp"
 #include "tests/net/live/air_bed.hpp"
 
@@ -200,7 +198,7 @@ TEST(Air, QuantisedIsCyclones) {
     for (std::size_t i = 0; i < beliefs.size(); ++i) {
       beliefs[i].subject = d.message.beliefs[i].subject;
       const Bytes body = quantised_body(d.extras.quantised[i], d.extras.bits);
-      std::memcpy(pool.resize(beliefs[i].body, body.size()).data(), body.data(), body.size());
+      pool.octets(beliefs[i].body, body);
     }
     HEARSAY_FORM(Quantised);
     one.sizes(form);

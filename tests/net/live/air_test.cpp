@@ -1,8 +1,6 @@
 // What the simulator charges for on the air are the types of air.idl, byte for byte.
 #include <gtest/gtest.h>
 
-#include <cstring>
-
 #include "filters/gaussian/trajectory_codec.hpp"
 #include "filters/grid/codec.hpp"
 #include "filters/trails/codec.hpp"
@@ -196,7 +194,7 @@ TEST(Air, OctetsAreCyclones) {
     for (std::byte& octet : message) octet = static_cast<std::byte>(random.bits());
     Pool pool;
     hearsay_OctetsPacket c{in_c(envelope), pool.text(kind), {}};
-    std::memcpy(pool.resize(c.message, message.size()).data(), message.data(), message.size());
+    pool.octets(c.message, message);
     Bytes bytes;
     pack_octets(envelope, kind, message, bytes);
     expect_same(hearsay_OctetsPacket_desc, &c, bytes);

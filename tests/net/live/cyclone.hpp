@@ -37,6 +37,12 @@ class Pool {
     const auto out = resize(sequence, values.size());
     std::copy(values.begin(), values.end(), out.begin());
   }
+  template <class Sequence>
+  void octets(Sequence& sequence, const Bytes& values) {
+    const auto out = resize(sequence, values.size());
+    for (std::size_t i = 0; i < values.size(); ++i)
+      out[i] = std::to_integer<std::uint8_t>(values[i]);
+  }
   /// Ω's upper triangle by rows.
   template <class Sequence>
   void triangle(Sequence& sequence, const gaussian::Matrix& m) {

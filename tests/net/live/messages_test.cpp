@@ -151,8 +151,7 @@ TEST(LiveMessages, FrameIsCyclones) {
     const Frame m = some_frame(random);
     Pool pool;
     hearsay_Frame c{m.agent, m.number, {}};
-    std::memcpy(pool.resize(c.content, m.content.size()).data(), m.content.data(),
-                m.content.size());
+    pool.octets(c.content, m.content);
     const Bytes bytes = encoded(m);
     expect_same(hearsay_Frame_desc, &c, bytes);
     Frame back;

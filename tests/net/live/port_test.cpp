@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 #include <poll.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <csignal>
 #include <optional>
 
 #include "net/live/messages.hpp"
@@ -172,6 +175,25 @@ TEST(Port, AWriterThatGoesIsNoLongerAlive) {
   ASSERT_TRUE(wait(agent, [&] { return reader.writers_alive() == 1; }));
   writer.reset();
   world.reset();
+  EXPECT_TRUE(wait(agent, [&] { return reader.writers_alive() == 0; }));
+}
+
+// One that could not say goodbye. The process is forked before there are threads.
+TEST(Port, AWriterThatIsKilledIsNoLongerAlive) {
+  const std::string fleet = own_fleet("killed");
+  const pid_t child = fork();
+  if (child == 0) {
+    Port world({.fleet = fleet});
+    const Writer writer = world.writer(truth_topic(), fleet);
+    while (getppid() != 1) sleep(1);
+    _exit(0);
+  }
+  Port agent({.fleet = fleet});
+  Reader reader = agent.reader(truth_topic(), fleet);
+  const bool was_alive = wait(agent, [&] { return reader.writers_alive() == 1; });
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  EXPECT_TRUE(was_alive);
   EXPECT_TRUE(wait(agent, [&] { return reader.writers_alive() == 0; }));
 }
 

@@ -27,7 +27,7 @@ moves = [{ at_s = 70.0, place = "dock" }]
 kind = "forager"
 count = 2
 robot = { start = "A" }
-task = { events = ["B"], respawn = true }
+task = { events = ["A", "B"] }
 """
 # 12 × 6 m; the upper line is y = 4 … 6 m.
 FLOOR = "######\n#A  B#\n# ####\n"

@@ -62,7 +62,7 @@ class BadScenario(Bed):
         text = ("duration_s = 9\nworld = { plan = { file = \"floor.txt\" } }\n[[agents]]\nkind = \"forager\"\n"
                 "robot = { start = \"A\" }\ntask = { events = [\"A\", \"B\"] }\ntrails = {}\n")
         file = self.write("scenario.toml", text)
-        self.bad("floor.txt: no such file", "check", file)
+        self.bad('scenario.toml:2: world.plan.file: there is no file "', "check", file)
         self.write("floor.txt", "#####\n#A.A#\n#####\n")
         self.bad("floor.txt:2: column 4: place A is also in line 2; each letter is allowed once", "check", file)
         self.write("floor.txt", "#####\n#A.C#\n#####\n")

@@ -9,7 +9,7 @@ from live_bed import LiveBed
 # Nothing is lost, so that what is not heard was not said; who is outdated is refused.
 CALM = ["--set", "radio.loss.probability=0.0", "--set", 'agents.estimator.fusion="channel-robust"',
         "--set", "record.messages=all"]
-DURATION_S = {"--lockstep": 800.0, "--speed": 120.0}
+DURATION_S = {"--lockstep": 800.0, "--speed": 160.0}
 
 
 class AnAgentIsKilled(LiveBed):
@@ -46,18 +46,19 @@ class AnAgentIsKilled(LiveBed):
         self.assertEqual(self.delivered(2, silent_s), {3})
         self.assertEqual(self.delivered(3, silent_s), {0, 2})
 
-    def expect_to_join_again(self, mode, radio=()):
+    def expect_to_join_again(self, mode, radio=(), memory=()):
         words = [*self.words(mode), *radio]
-        world, agents = self.world_and_agents(*words, world=self.world(mode))
+        world = self.start("world", *words, *self.world(mode), "--status")
+        agents = [self.start("agent", *words, "--id", i, *(memory if i == 1 else ())) for i in range(4)]
         self.until(lambda: world.now_s() > 0, "the run begins")
         agents[1].kill()
         self.ends(agents[1], -signal.SIGKILL)
-        agents[1] = self.start("agent", *words, "--id", 1)
+        agents[1] = self.start("agent", *words, "--id", 1, *memory)
         # A world may not have seen yet that the one before is gone.
         tries = 1
         while agents[1].wait() != 0 and tries < 20:
             self.assertIn("agent 1 is there already", agents[1].trouble())
-            agents[1] = self.start("agent", *words, "--id", 1)
+            agents[1] = self.start("agent", *words, "--id", 1, *memory)
             tries += 1
         self.ends(world)
         for agent in agents:
@@ -79,6 +80,30 @@ class AnAgentIsKilled(LiveBed):
     def test_in_real_time_another_process_takes_its_place(self):
         self.expect_to_be_heard(self.expect_to_join_again("--speed"))
         self.assertGreater(self.value("live.db", 1, "measurements"), 0)
+
+    def test_it_joins_again_with_what_it_remembers(self):
+        for mode in ["--lockstep", "--speed"]:
+            with self.subTest(mode):
+                self.expect_to_be_heard(self.expect_to_join_again(mode, memory=["--memory", f"memory{mode}"]))
+                self.assertEqual(self.rows("live.db", "SELECT detail FROM event WHERE kind = 'joined again'"),
+                                 [("with its memory",)])
+                (self.dir / "live.db").unlink()
+
+    def test_the_memory_of_another_agent_and_no_memory_at_all_are_refused(self):
+        words = ["ring.toml", "--id", 1, "--memory", "memory"]
+        self.write("memory", "nonsense")
+        agent = self.start("agent", *words)
+        self.ends(agent, 2)
+        self.assertIn("memory: is no memory of an agent, or damaged", agent.trouble())
+        common = ["ring.toml", "--set", "duration_s=10"]
+        world = self.start("world", *common, "--lockstep")
+        agents = [self.start("agent", *common, "--id", i, *(["--memory", "memory0"] if i == 0 else []))
+                  for i in range(4)]
+        for process in [world, *agents]:
+            self.ends(process)
+        agent = self.start("agent", *common, "--id", 1, "--memory", "memory0")
+        self.ends(agent, 2)
+        self.assertIn("memory0: is the memory of another agent: of agent 0 of scenario", agent.trouble())
 
     def expect_one_that_was_stopped_to_begin_anew(self, mode, absent_s):
         world, agents = self.world_and_agents(*self.words(mode), world=self.world(mode))

@@ -1,5 +1,6 @@
 // Numbers and texts one behind the other, little-endian, without padding: what a world and an agent
-// elsewhere tell each other. (What goes over radios is XCDR1, see the codecs of filters/.)
+// elsewhere tell each other, and what an agent remembers. (What goes over radios is XCDR1, see the
+// codecs of filters/.)
 #pragma once
 
 #include <bit>
@@ -10,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-namespace hearsay::remote {
+namespace hearsay {
 
 class Packer {
  public:
@@ -98,4 +99,4 @@ class Unpacker {
   bool good_ = true;
 };
 
-}  // namespace hearsay::remote
+}  // namespace hearsay

@@ -1,4 +1,5 @@
-"""Processes of a fleet that are killed, and that come back."""
+"""Agents that are killed or stopped in the midst of a run: the others go on, and another process may take their
+place."""
 import os
 import signal
 import unittest
@@ -104,13 +105,12 @@ class AnAgentIsKilled(LiveBed):
         self.ends(agent, 2)
         self.assertIn("memory0: is the memory of another agent: of agent 0 of scenario", agent.trouble())
 
-    def test_in_lockstep_a_process_that_was_taken_for_gone_begins_anew(self):
-        words = self.words("--lockstep")
-        world, agents = self.world_and_agents(*words, world=self.world("--lockstep"))
+    def expect_one_that_was_stopped_to_begin_anew(self, mode, absent_s):
+        world, agents = self.world_and_agents(*self.words(mode), world=self.world(mode))
         self.until(lambda: world.now_s() > 0, "the run begins")
         agents[1].kill(signal.SIGSTOP)
         then_s = world.now_s()
-        self.until(lambda: world.now_s() > then_s, "the world goes on without it")
+        self.until(lambda: world.now_s() > then_s + absent_s, "the world goes on without it")
         agents[1].kill(signal.SIGCONT)
         self.ends(world)
         for agent in agents:
@@ -118,6 +118,12 @@ class AnAgentIsKilled(LiveBed):
         ((_, silent),), ((joined_s, joined),) = self.came("silent"), self.came("joined again")
         self.assertEqual((silent, joined), (1, 1))
         self.expect_to_be_heard(joined_s)
+
+    def test_in_lockstep_a_process_that_was_taken_for_gone_begins_anew(self):
+        self.expect_one_that_was_stopped_to_begin_anew("--lockstep", 0.0)
+
+    def test_in_real_time_a_process_that_was_taken_for_gone_begins_anew(self):
+        self.expect_one_that_was_stopped_to_begin_anew("--speed", 60.0)
 
     def test_without_the_worlds_radio_another_process_is_heard_as_well(self):
         self.expect_to_join_again("--speed", ["--radio", "direct"])
@@ -135,44 +141,6 @@ class AnAgentIsKilled(LiveBed):
         self.assertEqual(self.delivered(0, silent_s), {1, 3})
         for line in ["estimator2   killed by signal 9", "estimator3   done", "world        done"]:
             self.assertIn(line, fleet.text())
-
-
-class TheWorldIsKilled(LiveBed):
-    def expect_agents_to_say_so(self, *pace):
-        words = ["ring.toml", "--set", "duration_s=100000"]
-        world, agents = self.world_and_agents(*words, world=pace)
-        self.until(lambda: world.now_s() > 0, "the run begins")
-        world.kill()
-        for i, agent in enumerate(agents):
-            self.ends(agent, 1)
-            self.assertEqual(agent.trouble(), f"hearsay agent {i}: the world of fleet '{self.fleet}' is gone\n")
-            self.assertEqual(agent.text(), "")
-
-    def test_in_lockstep_agents_end(self):
-        self.expect_agents_to_say_so("--lockstep")
-
-    def test_in_real_time_agents_end(self):
-        self.expect_agents_to_say_so("--speed", 10)
-
-    def test_before_it_began_agents_end(self):
-        world = self.start("world", "ring.toml")
-        agent = self.start("agent", "ring.toml", "--id", 0, "--status")
-        self.until(lambda: "waits for the others" in agent.text(), "it was welcome")
-        world.kill()
-        self.ends(agent, 1)
-
-    def test_where_there_is_none_agents_do_not_wait_for_ever(self):
-        agent = self.start("agent", "ring.toml", "--id", 1, "--patience", 0.3)
-        self.ends(agent, 1)
-        self.assertEqual(agent.trouble(),
-                         f"hearsay agent 1: no world of fleet '{self.fleet}' answered within 0.3 s\n")
-
-    def test_a_fleet_that_was_started_together_fails(self):
-        fleet = self.start("live", "ring.toml", "--set", "duration_s=100000", "--lockstep", "--out", "live.db")
-        self.until(lambda: len(self.members()) == 6, "all are there")
-        os.kill(self.world_of_live(), signal.SIGKILL)
-        self.ends(fleet, 1)
-        self.assertEqual(self.members(), {})
 
 
 if __name__ == "__main__":

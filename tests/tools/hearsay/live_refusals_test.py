@@ -36,6 +36,7 @@ class Refused(LiveBed):
         self.assertIn("the world refused it: agent 2 is there already", double.trouble())
         world.kill(signal.SIGTERM)
         self.ends(world, 1)
+        self.assertIn("hearsay world: it was asked to stop", world.trouble())
         for agent in agents:
             self.ends(agent)
 

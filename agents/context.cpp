@@ -32,13 +32,15 @@ Time Context::go_to(const std::array<double, 2>& place_m, double speed_m_per_s) 
     return now();
   }
   const Leg leg = motion::leg_to(now(), here, {place_m[0], place_m[1], here[2]}, speed_m_per_s);
-  service_.steers->steer(id(), leg);
+  steer(leg);
   return leg.end;
 }
 
-void Context::stay() {
-  require(steered(), "an agent that is not steered cannot stay");
-  service_.steers->steer(id(), {.begin = now(), .from_m = position()});
+void Context::stay() { steer({.begin = now(), .from_m = position()}); }
+
+void Context::steer(const Leg& leg) {
+  require(steered(), "an agent that is not steered can neither go nor stay");
+  service_.steers->steer(id(), leg);
 }
 
 bool Context::send(const Outgoing& packet) {

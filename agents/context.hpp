@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "net/gossip.hpp"
-#include "net/movement.hpp"
 #include "net/radio_port.hpp"
+#include "net/steering.hpp"
 #include "sim/kernel/process.hpp"
 #include "sim/kernel/simulation.hpp"
 
@@ -30,7 +30,7 @@ class Context {
   struct Service {
     bool acknowledged = false;   ///< repeated until acknowledged
     Gossip* gossip = nullptr;    ///< instead, by store-and-forward or a blackboard; not owned
-    Movement* steers = nullptr;  ///< what the agent is steered by, if it may be; not owned
+    Steering* steers = nullptr;  ///< what the agent is steered by, if it may be; not owned
   };
   /// `simulation`, `radio` and the service must outlive the context.
   Context(Simulation& simulation, RadioPort& radio, Identity identity, Service service);
@@ -71,6 +71,9 @@ class Context {
   Time go_to(const std::array<double, 2>& place_m, double speed_m_per_s);
   /// Stops where it is.
   void stay();
+  /// Moves along a leg, which begins now where it is; Steering::steer() says more.
+  /// @throws BrokenInvariant for one that is not steered.
+  void steer(const Leg& leg);
   /// False while the agent is down: it cannot look, talk or hear.
   bool up() const { return radio_.up(id()); }
   /// Whom a broadcast reaches now if nothing is lost, by number. Valid until anybody asks again.

@@ -7,14 +7,13 @@
 
 namespace hearsay {
 
-ExplorerAgent::ExplorerAgent(Context& context, GridWitness& witness, const Options& options)
+ExplorerAgent::ExplorerAgent(Context& context, RiderPool<GridRider>* riders, const Options& options)
     : Agent(context),
-      witness_(witness),
       options_(options),
-      estimator_(options.area, options.estimator, witness.riders()),
+      estimator_(options.area, options.estimator, riders),
       message_kind_(context.simulation().record().name("grid")) {
-  if (options_.sensor) sensor_.emplace(*options_.sensor, options_.area);
   if (options_.exploration) {
+    if (options_.sensor) sensor_.emplace(*options_.sensor, options_.area);
     require(context.steered(), "ExplorerAgent: only who is steered explores");
     exploration_.emplace(*options_.exploration, options_.area);
   }
@@ -22,7 +21,7 @@ ExplorerAgent::ExplorerAgent(Context& context, GridWitness& witness, const Optio
 
 void ExplorerAgent::start() {
   last_place_ = context().position();
-  if (sensor_) spawn(look());
+  if (options_.looks) spawn(look());
   if (exploration_) spawn(explore());
   if (options_.talk && options_.estimator.rule != grid::Rule::none) spawn(talk());
 }
@@ -39,12 +38,10 @@ Process ExplorerAgent::look() {
   Time next = options_.sensor_start;
   for (std::uint64_t count = 0; next <= options_.sensor_end; ++count) {
     co_await context().sleep_until(next, Phase::measure);
-    const Point place = context().position();
-    turn_to(place);
+    turn_to(context().position());
     if (context().up()) {
-      const auto looks = sensor_->look(place, heading_rad_, witness_.truth(),
-                                       context().simulation().seed(), context().id(), count);
-      estimator_.looked(looks, witness_.looked(context().id(), looks));
+      const Looks seen = options_.looks->look(heading_rad_, count);
+      estimator_.looked(seen.looks, seen.indices);
     }
     next = next + options_.sensor_period;
   }

@@ -13,8 +13,8 @@
 
 #include "agents/agent.hpp"
 #include "agents/behaviours/exploration.hpp"
+#include "agents/grids/area_look.hpp"
 #include "agents/grids/grid_estimator.hpp"
-#include "agents/grids/grid_witness.hpp"
 #include "agents/sensors/grid_sensor.hpp"
 #include "agents/talk/periodic.hpp"
 
@@ -25,7 +25,9 @@ class ExplorerAgent final : public Agent {
   struct Options {
     grid::Area area;
     GridEstimator::Options estimator;
-    std::optional<GridSensor::Options> sensor;  ///< nothing: it knows what others tell, no more
+    LookSource* looks = nullptr;  ///< null: it knows what others tell, no more. Not owned
+    /// Where it weighs where to go: what it would see from there.
+    std::optional<GridSensor::Options> sensor;
     Duration sensor_period = Duration::nanoseconds(1'000'000'000);
     Time sensor_start;
     Time sensor_end = Time::never();
@@ -38,7 +40,8 @@ class ExplorerAgent final : public Agent {
   static constexpr std::uint64_t packets_a_talk_max = std::uint64_t{1} << 20;
   static constexpr std::uint64_t talks_max = std::uint64_t{1} << 28;
 
-  ExplorerAgent(Context& context, GridWitness& witness, const Options& options);
+  /// `riders`: where the ledgers of its messages come from; nullptr: they are off. Both outlive it.
+  ExplorerAgent(Context& context, RiderPool<GridRider>* riders, const Options& options);
 
   void start() override;
   void on_packet(const Packet& packet) override;
@@ -58,7 +61,6 @@ class ExplorerAgent final : public Agent {
   void turn_to(const Point& place);
   double gain_at(const Exploration::State& state);
 
-  GridWitness& witness_;
   Options options_;
   GridEstimator estimator_;
   std::optional<GridSensor> sensor_;

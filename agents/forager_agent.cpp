@@ -26,27 +26,22 @@ drive::Odometer::Options odometry_of(const ForagerAgent::Options& options,
 
 }  // namespace
 
-ForagerAgent::ForagerAgent(Context& context, RobotWorld& world, TrailWitness& witness,
+ForagerAgent::ForagerAgent(Context& context, RobotBody& body, TrailAccount& account,
                            const Options& options)
     : Agent(context),
-      world_(world),
-      witness_(witness),
+      body_(body),
+      account_(account),
       options_(options),
       estimator_(options.estimator),
       follower_(options.follower),
       pilot_(options.pilot, *options.fan),
-      frame_(options.shared_frame ? drive::Pose{} : world.pose(options.robot)),
-      odometer_(odometry_of(options, world.pose(options.robot)), context.simulation().seed(),
-                context.id()),
+      frame_(options.shared_frame ? drive::Pose{} : body.pose()),
+      odometer_(odometry_of(options, body.pose()), context.simulation().seed(), context.id()),
       draws_(context.stream("forager")),
       message_kind_(context.simulation().record().name("trail")),
       scan_m_(options.fan->directions().size()) {
   require(!options_.task.empty(), "forager: a robot is after something");
   require(context.steered(), "forager: its radio goes where it goes");
-  witness_.watch({.agent = context.id(),
-                  .robot = options_.robot,
-                  .store = &estimator_.store(),
-                  .believed = [this] { return odometer_.pose(); }});
 }
 
 void ForagerAgent::start() {
@@ -76,23 +71,23 @@ Process ForagerAgent::talk() {
 void ForagerAgent::step() {
   if (to_put_back_ && !put_back()) return;
   if (waits_) {
-    witness_.drove(options_.robot, 0.0, false, Doing::waiting, dt_s());
-    if (!witness_.all_arrived()) return;
+    account_.drove(options_.robot, 0.0, false, Doing::waiting, dt_s());
+    if (!account_.all_arrived()) return;
     waits_ = false;
     set_off();
   }
-  if (world_.happens(options_.robot, goal())) arrive();
+  if (body_.happens(goal())) arrive();
   if (to_put_back_ || waits_) return;
-  world_.floor().scan(options_.robot, *options_.fan, options_.range_m, scan_m_);
+  body_.scan(scan_m_);
   Decision decision = decide();
   if (pilot_.panicking()) decision.doing = Doing::panicking;
   drive(decision);
 }
 
 void ForagerAgent::arrive() {
-  const bool ends_trip = witness_.arrived(options_.robot, goal());
+  const bool ends_trip = account_.arrived(options_.robot, goal());
   const bool first = ends_trip && !std::exchange(has_made_trip_, true);
-  witness_.told(options_.robot, estimator_.visit(goal(), believed(), now_s(), way()));
+  account_.told(options_.robot, estimator_.visit(goal(), believed(), now_s(), way()));
   follower_.arrived(draws_);
   pilot_.reset();
   aim_ = (aim_ + 1) % options_.task.size();
@@ -105,12 +100,11 @@ void ForagerAgent::arrive() {
 
 bool ForagerAgent::put_back() {
   to_put_back_ = true;
-  const Stream draws = context().stream_at("put back", times_put_back_++);
-  if (!world_.carry(options_.robot, options_.start, draws)) return false;
+  if (!body_.put_back(times_put_back_++)) return false;
   to_put_back_ = false;
   estimator_.carried();
   // Who carries it tells it where it is.
-  odometer_.set(drive::relative_to(frame_, world_.pose(options_.robot)));
+  odometer_.set(drive::relative_to(frame_, body_.pose()));
   carry_radio();
   pilot_.reset();
   follower_.reset();
@@ -120,15 +114,15 @@ bool ForagerAgent::put_back() {
 
 void ForagerAgent::set_off() {
   estimator_.set_off_anew();
-  witness_.gave_up(options_.robot);
-  witness_.sets_off(options_.robot);
+  account_.gave_up(options_.robot);
+  account_.sets_off(options_.robot);
 }
 
 ForagerAgent::Decision ForagerAgent::decide() {
   if (options_.navigation == Navigation::map) return by_map();
   const Pilot::Senses senses{now_s(), scan_m_, odometer_.pose()};
   // Tasks that begin together: until all have come by a way of their own, none follows another's.
-  const bool alone = options_.wait_for_all && !witness_.all_arrived();
+  const bool alone = options_.wait_for_all && !account_.all_arrived();
   if (options_.navigation == Navigation::trails && !alone) return by_trails(senses);
   return {pilot_.explore(senses, draws_), Doing::exploring};
 }
@@ -160,13 +154,13 @@ ForagerAgent::Decision ForagerAgent::by_trails(const Pilot::Senses& senses) {
 }
 
 ForagerAgent::Decision ForagerAgent::by_map() {
-  const drive::Pose& here = world_.pose(options_.robot);
+  const drive::Pose& here = body_.pose();
   const Pilot::Senses senses{now_s(), scan_m_, here};
   const bool old = map_made_ && (context().now() - *map_made_).seconds() >= map_again_s;
   if (!map_made_ || old) {
     map_made_ = context().now();
     map_next_ = 0;
-    const auto way = world_.way(options_.robot, goal());
+    const auto way = body_.way(goal());
     map_way_ = way ? *way : plan::Path{};
   }
   const auto near = [&](const plan::Point& p) {
@@ -181,12 +175,12 @@ ForagerAgent::Decision ForagerAgent::by_map() {
 }
 
 void ForagerAgent::drive(const Decision& decision) {
-  const drive::Pose before = world_.pose(options_.robot);
-  const auto step = world_.floor().drive(options_.robot, decision.command, dt_s());
+  const drive::Pose before = body_.pose();
+  const auto step = body_.drive(decision.command, dt_s());
   odometer_.drove(step.done, dt_s());
   const double length_m = std::fabs(step.done.forward_m_per_s) * dt_s();
-  witness_.drove(options_.robot, length_m, step.blocked, decision.doing, dt_s());
-  const drive::Pose& after = world_.pose(options_.robot);
+  account_.drove(options_.robot, length_m, step.blocked, decision.doing, dt_s());
+  const drive::Pose& after = body_.pose();
   const bool moved = before.x_m != after.x_m || before.y_m != after.y_m;
   if (moved || radio_moves_) carry_radio();
   radio_moves_ = moved;
@@ -197,19 +191,19 @@ void ForagerAgent::lay(const drive::Command& done) {
   if (options_.navigation != Navigation::trails) return;
   if (std::fabs(done.turn_rad_per_s) < turning_rad_per_s) way_s_ += dt_s();
   const trails::Laid laid = estimator_.lay(now_s(), believed(), way(), goal());
-  if (laid == trails::Laid::crumb) witness_.dropped(options_.robot);
+  if (laid == trails::Laid::crumb) account_.dropped(options_.robot);
   if (laid == trails::Laid::abandoned) {
-    witness_.gave_up(options_.robot);
+    account_.gave_up(options_.robot);
     if (options_.respawn) put_back();
   }
   const bool told_at_once = options_.estimator.laying == trails::Laying::at_once;
   if (laid != trails::Laid::crumb || !told_at_once) return;
-  witness_.told(options_.robot, std::span(&estimator_.laid(), 1));
+  account_.told(options_.robot, std::span(&estimator_.laid(), 1));
   if (options_.telling == Telling::at_once) tell();
 }
 
 void ForagerAgent::carry_radio() {
-  const drive::Pose& pose = world_.pose(options_.robot);
+  const drive::Pose& pose = body_.pose();
   const Point here = context().position();
   const double dx = pose.x_m - here[0], dy = pose.y_m - here[1];
   const double length_m = std::sqrt(dx * dx + dy * dy);
@@ -239,7 +233,7 @@ void ForagerAgent::tell() {
 void ForagerAgent::on_packet(const Packet& packet) {
   if (packet.kind != message_kind_) return;
   const auto crumbs = estimator_.heard(packet.bytes, now_s());
-  if (!crumbs.empty()) witness_.learned(options_.robot, estimator_.heard_from(), crumbs);
+  if (!crumbs.empty()) account_.learned(options_.robot, estimator_.heard_from(), crumbs);
 }
 
 void ForagerAgent::on_down() {
@@ -253,7 +247,7 @@ void ForagerAgent::on_up(bool forgets) {
   map_made_.reset();
   if (!forgets) return;
   estimator_.forget();
-  witness_.gave_up(options_.robot);
+  account_.gave_up(options_.robot);
 }
 
 void ForagerAgent::finish() {

@@ -14,15 +14,15 @@
 
 #include "agents/agent.hpp"
 #include "agents/behaviours/pilot.hpp"
-#include "agents/robots/robot_world.hpp"
+#include "agents/robots/robot_body.hpp"
 #include "agents/talk/periodic.hpp"
+#include "agents/trails/trail_account.hpp"
 #include "agents/trails/trail_estimator.hpp"
 #include "agents/trails/trail_follower.hpp"
-#include "agents/trails/trail_witness.hpp"
 
 namespace hearsay {
 
-class ForagerAgent final : public Agent {
+class ForagerAgent final : public Agent, public TrailMind {
  public:
   enum class Navigation {
     trails,
@@ -37,10 +37,8 @@ class ForagerAgent final : public Agent {
   };
   struct Options {
     int robot = 0;                                         ///< its number on the floor
-    RobotWorld::Start start;                               ///< where it is put back
     Duration period = Duration::nanoseconds(100'000'000);  ///< of control, > 0
     std::shared_ptr<const plan::Fan> fan;                  ///< of its scanner
-    double range_m = 5.0;
     bool shared_frame = false;          ///< its odometry begins with the true pose, else at 0
     drive::Odometer::Options odometry;  ///< all but the start
     double clock_offset_s = 0.0;        ///< what its clock is ahead
@@ -60,8 +58,8 @@ class ForagerAgent final : public Agent {
   /// most 2^28 steps, and a step not so many packets.
   static constexpr std::uint64_t packets_a_step_max = std::uint64_t{1} << 20;
 
-  /// World and witness outlive the agent.
-  ForagerAgent(Context& context, RobotWorld& world, TrailWitness& witness, const Options& options);
+  /// All outlive the agent.
+  ForagerAgent(Context& context, RobotBody& body, TrailAccount& account, const Options& options);
 
   void start() override;
   void on_packet(const Packet& packet) override;
@@ -71,10 +69,15 @@ class ForagerAgent final : public Agent {
   /// Leaves what it counted.
   void finish() override;
 
-  const TrailEstimator& estimator() const { return estimator_; }
+  std::size_t crumbs_known() const override { return estimator_.store().size(); }
+  trails::TrailCounts crumbs_counted() const override { return estimator_.store().counts(); }
+  void each_crumb(const std::function<void(const trails::Crumb&)>& look) const override {
+    estimator_.store().for_each(look);
+  }
+  drive::Pose believed_pose() const override { return odometer_.pose(); }
 
  private:
-  using Doing = TrailWitness::Doing;
+  using Doing = TrailAccount::Doing;
   struct Decision {
     drive::Command command;
     Doing doing = Doing::exploring;
@@ -104,8 +107,8 @@ class ForagerAgent final : public Agent {
     return trails::point(odometer_.pose().x_m, odometer_.pose().y_m);
   }
 
-  RobotWorld& world_;
-  TrailWitness& witness_;
+  RobotBody& body_;
+  TrailAccount& account_;
   Options options_;
   TrailEstimator estimator_;
   TrailFollower follower_;

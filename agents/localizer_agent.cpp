@@ -28,15 +28,18 @@ std::optional<Place> place_in(const gaussian::Belief& belief) {
 
 }  // namespace
 
-LocalizerAgent::LocalizerAgent(Context& context, PoseWitness& witness, Options options)
+LocalizerAgent::LocalizerAgent(Context& context, SightingAccount& account, Options options)
     : Agent(context),
-      witness_(witness),
+      account_(account),
       options_(std::move(options)),
       filter_(options_.filter),
       reckoning_(options_.memory, reckoning_step),
       odometer_(options_.drives),
-      message_kind_(context.simulation().record().name("position")) {
-  witness_.watch(context.id(), [this]() -> const localization::PoseFilter& { return filter(); });
+      message_kind_(context.simulation().record().name("position")) {}
+
+std::optional<PoseBelief> LocalizerAgent::own_pose() {
+  const localization::PoseFilter& own = filter();
+  return PoseBelief{own.pose(0), own.covariance(0)};
 }
 
 const localization::PoseFilter& LocalizerAgent::filter() {
@@ -78,7 +81,7 @@ void LocalizerAgent::meet(const Encounter& encounter) {
     meet_companion(encounter, seen);
   } else if (subject < options_.landmarks.size()) {
     ++counts_.measurements;
-    witness_.saw_place(context().id(), options_.landmarks[subject], seen);
+    account_.saw_place(context().id(), options_.landmarks[subject], seen);
     const localization::Use use = filter_.saw_place(0, options_.landmarks[subject], seen);
     if (use == localization::Use::outside_gate) ++counts_.outside_gate;
     if (use == localization::Use::no_direction) ++counts_.skipped;
@@ -87,7 +90,7 @@ void LocalizerAgent::meet(const Encounter& encounter) {
 
 void LocalizerAgent::meet_companion(const Encounter& encounter, const RelativeSighting& seen) {
   ++counts_.measurements;
-  witness_.saw_robot(context().id(), encounter.subject, seen);
+  account_.saw_robot(context().id(), encounter.subject, seen);
   if (options_.rule == gaussian::Rule::none) return;
   Companion& other = companion(encounter.subject);
   if (other.said) {

@@ -15,14 +15,14 @@
 #include "agents/agent.hpp"
 #include "agents/dead_reckoning.hpp"
 #include "agents/journey.hpp"
-#include "agents/pose_witness.hpp"
+#include "agents/pose_mind.hpp"
 #include "agents/talk/periodic.hpp"
 #include "filters/gaussian/codec.hpp"
 #include "filters/localization/relative.hpp"
 
 namespace hearsay {
 
-class LocalizerAgent final : public Agent {
+class LocalizerAgent final : public Agent, public PoseMind {
  public:
   struct Options {
     localization::PoseFilter::Options filter;  ///< of one robot
@@ -37,7 +37,8 @@ class LocalizerAgent final : public Agent {
     gaussian::Rule rule = gaussian::Rule::none;  ///< one that fuses by weight and keeps no memory
     std::optional<PeriodicTalk> talk;            ///< nothing: never talks
   };
-  LocalizerAgent(Context& context, PoseWitness& witness, Options options);
+  /// `account` outlives the agent.
+  LocalizerAgent(Context& context, SightingAccount& account, Options options);
 
   void start() override;
   void on_packet(const Packet& packet) override;
@@ -46,6 +47,7 @@ class LocalizerAgent final : public Agent {
   /// Leaves what it counted.
   void finish() override;
 
+  std::optional<PoseBelief> own_pose() override;
   /// Up to the present.
   const localization::PoseFilter& filter();
 
@@ -74,7 +76,7 @@ class LocalizerAgent final : public Agent {
   void count(localization::Taken taken);
   localization::Fusion fusion() const { return {options_.rule, options_.filter.gate}; }
 
-  PoseWitness& witness_;
+  SightingAccount& account_;
   Options options_;
   localization::PoseFilter filter_;
   DeadReckoning reckoning_;

@@ -22,6 +22,7 @@ class Packer {
   void u32(std::uint32_t value) { number(value); }
   void u64(std::uint64_t value) { number(value); }
   void i64(std::int64_t value) { number(static_cast<std::uint64_t>(value)); }
+  void f32(float value) { number(std::bit_cast<std::uint32_t>(value)); }
   void f64(double value) { number(std::bit_cast<std::uint64_t>(value)); }
   void count(std::size_t value) { u32(static_cast<std::uint32_t>(value)); }
   void bytes(std::span<const std::byte> value) {
@@ -52,6 +53,7 @@ class Unpacker {
   std::uint32_t u32() { return number<std::uint32_t>(); }
   std::uint64_t u64() { return number<std::uint64_t>(); }
   std::int64_t i64() { return static_cast<std::int64_t>(u64()); }
+  float f32() { return std::bit_cast<float>(u32()); }
   double f64() { return std::bit_cast<double>(u64()); }
   /// How many things follow that take at least `bytes_each` each.
   std::size_t count(std::size_t bytes_each) {

@@ -21,8 +21,8 @@ PoseWitness::PoseWitness(Simulation& simulation, Options options)
   }
 }
 
-void PoseWitness::watch(AgentId agent, Present present) {
-  watched_.push_back({.agent = agent, .present = std::move(present), .sums = {}});
+void PoseWitness::watch(AgentId agent, PoseMind& mind) {
+  watched_.push_back({.agent = agent, .mind = &mind, .sums = {}});
 }
 
 void PoseWitness::advance(std::size_t robot) {
@@ -71,8 +71,9 @@ void PoseWitness::sample() {
   }
   for (Watched& watched : watched_) {
     watched.sums.begin_sample();
-    const localization::PoseFilter& own = watched.present();
-    sample(watched.agent, static_cast<std::size_t>(watched.agent), own.pose(0), own.covariance(0),
+    const std::optional<PoseBelief> own = watched.mind->own_pose();
+    if (!own) continue;
+    sample(watched.agent, static_cast<std::size_t>(watched.agent), own->pose, own->covariance,
            watched.sums);
   }
 }

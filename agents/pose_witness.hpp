@@ -3,18 +3,18 @@
 // truth. No agent can ask it anything.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "agents/journey.hpp"
 #include "agents/metrics.hpp"
+#include "agents/pose_mind.hpp"
 #include "sim/kernel/simulation.hpp"
 
 namespace hearsay {
 
-class PoseWitness {
+class PoseWitness final : public SightingAccount {
  public:
   struct Options {
     std::vector<std::string> names;             ///< of the robots, by number
@@ -26,14 +26,13 @@ class PoseWitness {
   /// `simulation` must outlive the witness.
   PoseWitness(Simulation& simulation, Options options);
 
-  /// From now on the pose that `present` gives is sampled, one's own. Agents in ascending number.
-  using Present = std::function<const localization::PoseFilter&()>;
-  void watch(AgentId agent, Present present);
+  /// From now on the pose that `mind` believes in is sampled. Agents in ascending number. `mind`
+  /// outlives the witness.
+  void watch(AgentId agent, PoseMind& mind);
 
-  /// An agent saw this now.
   void saw_place(AgentId agent, const Eigen::Vector2d& place_m,
-                 const localization::RelativeSighting& seen);
-  void saw_robot(AgentId agent, AgentId other, const localization::RelativeSighting& seen);
+                 const localization::RelativeSighting& seen) override;
+  void saw_robot(AgentId agent, AgentId other, const localization::RelativeSighting& seen) override;
 
   /// Schedules the samples up to the end of the run, which it has. Once, before it starts.
   void start();
@@ -51,7 +50,7 @@ class PoseWitness {
   };
   struct Watched {
     AgentId agent;
-    Present present;
+    PoseMind* mind;
     Sums sums;
   };
   void schedule_sample(Time at);

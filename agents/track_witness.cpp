@@ -4,10 +4,10 @@ namespace hearsay {
 namespace {
 
 /// Where confirmed tracks are at `now`: on from their last stamp at their last velocity.
-std::vector<tracking::Placed> places_of(const tracking::Tracker& tracker, Time now) {
+std::vector<tracking::Placed> places_of(const TrackMind& mind, Time now) {
   std::vector<tracking::Placed> places;
-  const double dt_s = 1e-9 * static_cast<double>(now.nanoseconds() - tracker.stamp());
-  for (const tracking::Report& report : tracker.reports()) {
+  const double dt_s = 1e-9 * static_cast<double>(now.nanoseconds() - mind.track_stamp());
+  for (const tracking::Report& report : mind.confirmed_tracks()) {
     const auto state = gaussian::state(report.belief);
     if (!state) continue;
     gaussian::Vector position = state->head(2);
@@ -22,8 +22,8 @@ std::vector<tracking::Placed> places_of(const tracking::Tracker& tracker, Time n
 TrackWitness::TrackWitness(Simulation& simulation, const Options& options)
     : simulation_(simulation), options_(options) {}
 
-void TrackWitness::watch(AgentId agent, const tracking::Tracker& tracker) {
-  watched_.push_back({agent, &tracker, tracking::TrackScore(options_.score)});
+void TrackWitness::watch(AgentId agent, const TrackMind& mind) {
+  watched_.push_back({agent, &mind, tracking::TrackScore(options_.score)});
 }
 
 void TrackWitness::start() { schedule_sample(Time()); }
@@ -46,7 +46,7 @@ void TrackWitness::sample() {
     truths.back().position << at[0], at[1];
   }
   for (Watched& watched : watched_) {
-    keep(watched.agent, watched.score.sample(truths, places_of(*watched.tracker, now)));
+    keep(watched.agent, watched.score.sample(truths, places_of(*watched.mind, now)));
   }
 }
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "agents/target_truth.hpp"
+#include "agents/track_mind.hpp"
 #include "filters/tracking/score.hpp"
-#include "filters/tracking/tracker.hpp"
 #include "sim/kernel/simulation.hpp"
 
 namespace hearsay {
@@ -27,7 +27,8 @@ class TrackWitness {
   TrackWitness(Simulation& simulation, const Options& options);
 
   /// From now on `agent`'s confirmed tracks are compared. Agents in ascending number.
-  void watch(AgentId agent, const tracking::Tracker& tracker);
+  /// `mind` outlives the witness.
+  void watch(AgentId agent, const TrackMind& mind);
 
   /// Schedules the samples up to the end of the run. Once, before it starts.
   void start();
@@ -37,7 +38,7 @@ class TrackWitness {
  private:
   struct Watched {
     AgentId agent;
-    const tracking::Tracker* tracker;
+    const TrackMind* mind;
     tracking::TrackScore score;
   };
   void schedule_sample(Time at);

@@ -1,7 +1,6 @@
 #include "agents/tracker_agent.hpp"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "agents/trail_message.hpp"
@@ -16,7 +15,7 @@ TrackerAgent::TrackerAgent(Context& context, Options options)
       trails_kind_(context.simulation().record().name("trails")) {}
 
 void TrackerAgent::start() {
-  if (options_.sensor) spawn(look());
+  if (options_.scanner) spawn(look());
   if (options_.talk && options_.tracker.rule != gaussian::Rule::none) spawn(talk());
 }
 
@@ -24,28 +23,12 @@ Process TrackerAgent::look() {
   Time next = options_.sensor_start;
   for (std::uint64_t count = 0; next <= options_.sensor_end; ++count) {
     co_await context().sleep_until(next, Phase::measure);
-    if (context().up()) scan(count);
+    if (context().up()) {
+      options_.scanner->scan(count, plots_);
+      tracker_.scan(context().now().nanoseconds(), plots_.plots, plots_.coverage);
+    }
     next = next + options_.sensor_period;
   }
-}
-
-void TrackerAgent::scan(std::uint64_t count) {
-  const ScanSensor& sensor = *options_.sensor;
-  std::array<double, 2> place_m{0.0, 0.0};
-  tracking::Coverage coverage;
-  if (sensor.has_place()) {
-    const Point here = context().position();
-    place_m = {here[0], here[1]};
-    coverage.centre = gaussian::Vector(2);
-    coverage.centre << place_m[0], place_m[1];
-    coverage.range = sensor.options().range_max_m;
-  }
-  std::vector<std::array<double, 2>> targets_m;
-  for (const TargetTruth& target : options_.targets)
-    targets_m.push_back(target.at(context().now()));
-  const auto plots =
-      sensor.scan(place_m, targets_m, context().simulation().seed(), context().id(), count);
-  tracker_.scan(context().now().nanoseconds(), plots, coverage);
 }
 
 Process TrackerAgent::talk() {

@@ -11,25 +11,24 @@
 #include <vector>
 
 #include "agents/agent.hpp"
-#include "agents/sensors/scan.hpp"
+#include "agents/sensors/target_scan.hpp"
 #include "agents/talk/periodic.hpp"
-#include "agents/target_truth.hpp"
+#include "agents/track_mind.hpp"
 #include "filters/gaussian/codec.hpp"
 #include "filters/gaussian/trajectory_codec.hpp"
 #include "filters/tracking/tracker.hpp"
 
 namespace hearsay {
 
-class TrackerAgent final : public Agent {
+class TrackerAgent final : public Agent, public TrackMind {
  public:
   struct Options {
     tracking::Tracker::Options tracker;  ///< two axes, stamps in nanoseconds
-    std::optional<ScanSensor> sensor;    ///< nothing: it knows what others tell, no more
+    PlotSource* scanner = nullptr;       ///< null: it knows what others tell, no more. Not owned
     Duration sensor_period = Duration::nanoseconds(1'000'000'000);
     Time sensor_start;
     Time sensor_end = Time::never();
-    std::span<const TargetTruth> targets;  ///< for the sensor; they outlive the agent
-    std::optional<PeriodicTalk> talk;      ///< nothing: never talks
+    std::optional<PeriodicTalk> talk;  ///< nothing: never talks
   };
   TrackerAgent(Context& context, Options options);
 
@@ -41,10 +40,11 @@ class TrackerAgent final : public Agent {
   void finish() override;
 
   const tracking::Tracker& tracker() const { return tracker_; }
+  gaussian::Stamp track_stamp() const override { return tracker_.stamp(); }
+  std::vector<tracking::Report> confirmed_tracks() const override { return tracker_.reports(); }
 
  private:
   Process look();
-  void scan(std::uint64_t count);
   Process talk();
   void say(std::uint64_t tick);
   void tell(std::span<const tracking::Report> reports);
@@ -72,6 +72,7 @@ class TrackerAgent final : public Agent {
   gaussian::StampedMessage message_;
   gaussian::TrajectoryMessage trails_;
   std::vector<std::byte> bytes_;
+  Plots plots_;
   std::vector<tracking::Report> reports_;
 };
 

@@ -5,8 +5,7 @@
 
 #include "net/path_source.hpp"
 #include "net/places.hpp"
-#include "sim/kernel/ids.hpp"
-#include "sim/kernel/leg.hpp"
+#include "net/steering.hpp"
 #include "sim/kernel/simulation.hpp"
 
 namespace hearsay {
@@ -14,7 +13,7 @@ namespace hearsay {
 /// One event an agent, in Phase::world, whenever its leg ends or its filing does; none for what
 /// stands still for ever, until it is steered. So everybody is in place when others look, at any
 /// instant.
-class Movement {
+class Movement final : public Steering {
  public:
   /// Sets all agents of `places` at the simulation's now(). Legs that are over by then are passed
   /// over. All three must outlive the simulation's run.
@@ -23,11 +22,7 @@ class Movement {
   Movement(const Movement&) = delete;
   Movement& operator=(const Movement&) = delete;
 
-  /// `agent` leaves its path for good: from now on it moves along `leg`, which begins now where it
-  /// is, and stays where that ends, until it is steered again.
-  /// @throws BrokenInvariant for a leg that begins at another time or place (by more than 1 mm), or
-  /// that is over.
-  void steer(AgentId agent, const Leg& leg);
+  void steer(AgentId agent, const Leg& leg) override;
 
  private:
   struct Course {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "scenarios/run.hpp"
+#include "scenarios/talk.hpp"
 #include "sim/kernel/random.hpp"
 
 namespace hearsay {
@@ -109,7 +111,17 @@ std::unique_ptr<GridWitness> make_grid_witness(const Scenario& scenario, Simulat
                            .place_of = std::move(place_of)});
 }
 
-ExplorerAgent::Options explorer_options(const AgentSpec& spec, const WorldSpec& world) {
+std::optional<GridSensor::Options> grid_sensor_of(const AgentSpec& spec, const WorldSpec& world) {
+  if (spec.sensor.kind == "none") return std::nullopt;
+  GridSensor::Options options = sensor_of(spec.sensor);
+  options.relief = world.area->relief;
+  return options;
+}
+
+ExplorerAgent::Options explorer_options(const PreparedScenario& prepared, AgentId id,
+                                        std::uint64_t seed, LookSource* looks) {
+  const AgentSpec& spec = *prepared.specs[static_cast<std::size_t>(id)];
+  const WorldSpec& world = prepared.scenario.world;
   ExplorerAgent::Options options{
       .area = area_of(world),
       .estimator = {.belief = belief_of(spec.grid),
@@ -118,13 +130,10 @@ ExplorerAgent::Options explorer_options(const AgentSpec& spec, const WorldSpec& 
                     .form = form_of(spec.grid.message),
                     .whole_every = spec.grid.whole_every.value_or(0),
                     .packet_bytes = static_cast<std::size_t>(spec.grid.packet_bytes_max)},
-      .sensor = std::nullopt,
+      .looks = looks,
+      .sensor = grid_sensor_of(spec, world),
       .exploration = std::nullopt,
       .talk = std::nullopt};
-  if (spec.sensor.kind != "none") {
-    options.sensor = sensor_of(spec.sensor);
-    options.sensor->relief = world.area->relief;
-  }
   options.sensor_period = Duration::seconds(spec.sensor.period_s);
   options.sensor_start = Time::at(Duration::seconds(spec.sensor.start_s));
   if (spec.sensor.end_s) options.sensor_end = Time::at(Duration::seconds(*spec.sensor.end_s));
@@ -132,6 +141,7 @@ ExplorerAgent::Options explorer_options(const AgentSpec& spec, const WorldSpec& 
     options.exploration = exploration_of(*spec.exploration);
     options.speed_m_per_s = spec.exploration->speed_m_per_s;
   }
+  if (spec.talk.policy == "periodic") options.talk = talk_of(prepared, id, seed);
   return options;
 }
 

@@ -2,12 +2,15 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "agents/explorer_agent.hpp"
 #include "scenarios/scenario.hpp"
 
 namespace hearsay {
+
+struct PreparedScenario;
 
 /// True if some agent explores.
 bool has_explorers(const Scenario& scenario);
@@ -22,7 +25,11 @@ std::vector<grid::Point> target_places_of(const WorldSpec& world, std::uint64_t 
 std::unique_ptr<GridWitness> make_grid_witness(const Scenario& scenario, Simulation& simulation,
                                                std::function<Point(AgentId)> place_of);
 
-/// All but when it talks.
-ExplorerAgent::Options explorer_options(const AgentSpec& spec, const WorldSpec& world);
+/// Of an agent that explores, in the run of this seed. `looks`: null for who has no sensor.
+ExplorerAgent::Options explorer_options(const PreparedScenario& prepared, AgentId id,
+                                        std::uint64_t seed, LookSource* looks);
+
+/// Whether it has a sensor, and which.
+std::optional<GridSensor::Options> grid_sensor_of(const AgentSpec& spec, const WorldSpec& world);
 
 }  // namespace hearsay

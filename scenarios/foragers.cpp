@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "filters/trails/parameters.hpp"
+#include "scenarios/run.hpp"
+#include "scenarios/talk.hpp"
 #include "scenarios/trails_checks.hpp"
 #include "sim/kernel/error.hpp"
 #include "sim/kernel/random.hpp"
@@ -196,16 +198,30 @@ std::unique_ptr<TrailWitness> make_trail_witness(const Scenario& scenario, Simul
                             .up = std::move(up)});
 }
 
-ForagerAgent::Options forager_options(const AgentSpec& spec, const Scenario& scenario, AgentId id,
-                                      int robot, std::uint64_t seed) {
+int robot_of(const PreparedScenario& prepared, AgentId id) {
+  const auto before = prepared.specs.begin() + id;
+  return static_cast<int>(std::count_if(prepared.specs.begin(), before,
+                                        [](const AgentSpec* spec) { return forages(*spec); }));
+}
+
+FloorBody::Options body_options(const PreparedScenario& prepared, AgentId id) {
+  const RobotSpec& body = prepared.specs[static_cast<std::size_t>(id)]->robot.value();
+  return {.robot = robot_of(prepared, id),
+          .start = start_of(body, *prepared.scenario.world.plan->plan),
+          .fan = std::make_shared<plan::Fan>(body.rays, body.view_rad),
+          .range_m = body.range_m};
+}
+
+ForagerAgent::Options forager_options(const PreparedScenario& prepared, AgentId id,
+                                      std::uint64_t seed) {
+  const Scenario& scenario = prepared.scenario;
+  const AgentSpec& spec = *prepared.specs[static_cast<std::size_t>(id)];
   const RobotSpec& body = spec.robot.value();
   const TrailsSpec& trails = spec.trails.value();
   ForagerAgent::Options options;
-  options.robot = robot;
-  options.start = start_of(body, *scenario.world.plan->plan);
+  options.robot = robot_of(prepared, id);
   options.period = Duration::seconds(body.control_period_s);
   options.fan = std::make_shared<plan::Fan>(body.rays, body.view_rad);
-  options.range_m = body.range_m;
   options.shared_frame = body.frame == "shared";
   options.odometry = {.start = {},
                       .forward_bias = body.forward_bias,
@@ -229,9 +245,10 @@ ForagerAgent::Options forager_options(const AgentSpec& spec, const Scenario& sce
   options.pilot = pilot_of(spec);
   options.follower = follower_of(trails);
   options.search_radius_m = 2.0 * sense_radius_of(trails);
-  options.estimator = estimator_of(trails, scenario, robot);
+  options.estimator = estimator_of(trails, scenario, options.robot);
   options.distance = distance_of(trails);
   options.telling = telling_of(spec.talk.policy);
+  if (spec.talk.policy == "periodic") options.talk = talk_of(prepared, id, seed);
   return options;
 }
 

@@ -7,9 +7,13 @@
 #include <vector>
 
 #include "agents/forager_agent.hpp"
+#include "agents/robots/floor_body.hpp"
+#include "agents/trails/trail_witness.hpp"
 #include "scenarios/scenario.hpp"
 
 namespace hearsay {
+
+struct PreparedScenario;
 
 /// True if some agent forages.
 bool has_foragers(const Scenario& scenario);
@@ -27,8 +31,14 @@ std::unique_ptr<TrailWitness> make_trail_witness(const Scenario& scenario, Simul
                                                  const RobotWorld& world,
                                                  std::function<bool(AgentId)> up);
 
-/// All but when it talks. `robot`: its number on the floor.
-ForagerAgent::Options forager_options(const AgentSpec& spec, const Scenario& scenario, AgentId id,
-                                      int robot, std::uint64_t seed);
+/// The number on the floor of an agent that forages.
+int robot_of(const PreparedScenario& prepared, AgentId id);
+
+/// Of an agent that forages, in the run of this seed.
+ForagerAgent::Options forager_options(const PreparedScenario& prepared, AgentId id,
+                                      std::uint64_t seed);
+
+/// Of the same.
+FloorBody::Options body_options(const PreparedScenario& prepared, AgentId id);
 
 }  // namespace hearsay

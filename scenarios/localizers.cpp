@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "scenarios/run.hpp"
+#include "scenarios/talk.hpp"
 #include "sim/kernel/error.hpp"
 
 namespace hearsay {
@@ -92,11 +94,17 @@ localization::PoseFilter::Options pose_filter_options(const LocalizerSpec& spec,
   return options;
 }
 
-LocalizerAgent::Options localizer_options(const AgentSpec& spec, const Journey& journey,
-                                          std::span<const Eigen::Vector2d> landmarks) {
+LocalizerAgent::Options localizer_options(const PreparedScenario& prepared, AgentId id,
+                                          std::uint64_t seed) {
+  const auto i = static_cast<std::size_t>(id);
+  const AgentSpec& spec = *prepared.specs[i];
+  const Journey& journey = prepared.journeys[i];
+  const std::span<const Eigen::Vector2d> landmarks = prepared.landmarks;
   const LocalizerSpec& localizer = spec.localizer;
   const auto known = static_cast<std::size_t>(
       localizer.landmarks_known.value_or(static_cast<int>(landmarks.size())));
+  std::optional<PeriodicTalk> talk;
+  if (spec.talk.policy == "periodic") talk = talk_of(prepared, id, seed);
   return {.filter = pose_filter_options(localizer, std::span(&journey, 1)),
           .drives = journey.drives,
           .encounters = journey.encounters,
@@ -106,7 +114,7 @@ LocalizerAgent::Options localizer_options(const AgentSpec& spec, const Journey& 
           .companion_speed_m_per_s = localizer.companion_speed_m_per_s,
           .memory = Duration::seconds(localizer.memory_s),
           .rule = gaussian::rule_by_name(localizer.fusion).value(),
-          .talk = std::nullopt};
+          .talk = talk};
 }
 
 }  // namespace hearsay

@@ -10,6 +10,8 @@
 
 namespace hearsay {
 
+struct PreparedScenario;
+
 /// True if some agent localizes itself.
 bool has_localizers(const Scenario& scenario);
 
@@ -24,8 +26,8 @@ std::vector<Eigen::Vector2d> landmarks_of(const mrclam::Dataset& log);
 localization::PoseFilter::Options pose_filter_options(const LocalizerSpec& spec,
                                                       std::span<const Journey> journeys);
 
-/// All but when it talks. What is given by reference outlives the agent.
-LocalizerAgent::Options localizer_options(const AgentSpec& spec, const Journey& journey,
-                                          std::span<const Eigen::Vector2d> landmarks);
+/// Of an agent that localizes itself, in the run of this seed. `prepared` outlives the agent.
+LocalizerAgent::Options localizer_options(const PreparedScenario& prepared, AgentId id,
+                                          std::uint64_t seed);
 
 }  // namespace hearsay

@@ -3,6 +3,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "agents/estimator_agent.hpp"
+#include "agents/explorer_agent.hpp"
+#include "agents/forager_agent.hpp"
+#include "agents/localizer_agent.hpp"
+#include "agents/source_agent.hpp"
+#include "agents/tracker_agent.hpp"
 #include "scenarios/channel.hpp"
 #include "scenarios/estimators.hpp"
 #include "scenarios/explorers.hpp"
@@ -60,18 +66,9 @@ KnownNames known_names(const Catalog& catalog) {
   return names;
 }
 
-void require_can_live_elsewhere(const PreparedScenario& prepared, const Catalog& catalog) {
-  for (std::size_t i = 0; i < prepared.specs.size(); ++i) {
-    const AgentSpec& spec = *prepared.specs[i];
-    const bool own = catalog.agents().contains(spec.kind);
-    const bool steered = spec.motion && spec.motion->kind == "steered";
-    if ((own || spec.kind == "estimator" || spec.kind == "source") && !steered) continue;
-    throw InputError(prepared.scenario.file, 0,
-                     "agent '" + prepared.names[i] + "' of kind '" + spec.kind + "'" +
-                         (steered ? ", which is steered," : "") +
-                         " cannot live in a process of its own; agents of kind 'estimator', "
-                         "'source' and of your own kinds can, where they are not steered");
-  }
+bool is_steered(const PreparedScenario& prepared, AgentId id) {
+  const AgentSpec& spec = *prepared.specs[static_cast<std::size_t>(id)];
+  return spec.kind == "forager" || (spec.motion && spec.motion->kind == "steered");
 }
 
 std::shared_ptr<const PreparedScenario> prepare(Scenario scenario, const Catalog&, LogCache& logs) {
@@ -203,7 +200,6 @@ void Run::build_agents(const Catalog& catalog) {
   for (std::size_t i = 0; i < prepared_->specs.size(); ++i) {
     const AgentSpec& spec = *prepared_->specs[i];
     const auto id = static_cast<AgentId>(i);
-    const bool steers = robots_[i] >= 0 || (spec.motion && spec.motion->kind == "steered");
     record.agent(id, prepared_->names[i], spec.kind);
     gossips_.push_back(make_gossip(scenario, spec, id, simulation_, *radio_));
     contexts_.push_back(std::make_unique<Context>(
@@ -214,8 +210,9 @@ void Run::build_agents(const Catalog& catalog) {
                           .parameters = spec.parameters},
         Context::Service{.acknowledged = spec.talk.service == "acknowledged",
                          .gossip = gossips_.back().get(),
-                         .steers = steers ? movement_.get() : nullptr}));
+                         .steers = is_steered(*prepared_, id) ? movement_.get() : nullptr}));
     lookouts_.emplace_back();
+    equipment_.emplace_back();
     agents_.push_back(make_agent(id, catalog));
     if (gossips_.back()) {
       gossips_.back()->attach(*agents_.back());
@@ -253,53 +250,61 @@ std::unique_ptr<Agent> Run::make_estimator(AgentId id) {
   return agent;
 }
 
-std::unique_ptr<Agent> Run::make_stand_in(AgentId id) {
-  const bool estimates = prepared_->specs[static_cast<std::size_t>(id)]->kind == "estimator";
-  Context& context = *contexts_[static_cast<std::size_t>(id)];
-  auto agent = elsewhere_(context, estimates ? witness_.get() : nullptr);
-  if (estimates) {
-    witness_->watch(id, agent->believer());
-    lookouts_.back() = make_lookout(*prepared_, id, context, *witness_, *agent, subjects_);
-  }
-  return agent;
+PlotSource* Run::equip_with_scan(AgentId id) {
+  const auto i = static_cast<std::size_t>(id);
+  const auto sensor = scan_sensor_of(*prepared_->specs[i]);
+  if (!sensor) return nullptr;
+  equipment_[i].scan = std::make_unique<TargetScan>(*contexts_[i], *sensor, targets_);
+  return equipment_[i].scan.get();
+}
+
+LookSource* Run::equip_with_looks(AgentId id) {
+  const auto i = static_cast<std::size_t>(id);
+  const WorldSpec& world = prepared_->scenario.world;
+  const auto sensor = grid_sensor_of(*prepared_->specs[i], world);
+  if (!sensor) return nullptr;
+  equipment_[i].looks =
+      std::make_unique<AreaLook>(*contexts_[i], *grid_witness_, *sensor, area_of(world));
+  return equipment_[i].looks.get();
+}
+
+RobotBody& Run::equip_with_body(AgentId id) {
+  const auto i = static_cast<std::size_t>(id);
+  equipment_[i].body =
+      std::make_unique<FloorBody>(*contexts_[i], *robot_world_, body_options(*prepared_, id));
+  return *equipment_[i].body;
 }
 
 std::unique_ptr<Agent> Run::make_tracker(AgentId id) {
-  const auto i = static_cast<std::size_t>(id);
-  const AgentSpec& spec = *prepared_->specs[i];
-  TrackerAgent::Options options = tracker_options(spec, targets_);
-  if (spec.talk.policy == "periodic") options.talk = talk_of(*prepared_, id, simulation_.seed());
-  auto agent = std::make_unique<TrackerAgent>(*contexts_[i], std::move(options));
-  track_witness_->watch(id, agent->tracker());
+  auto agent = std::make_unique<TrackerAgent>(
+      *contexts_[static_cast<std::size_t>(id)],
+      tracker_options(*prepared_, id, simulation_.seed(), equip_with_scan(id)));
+  track_witness_->watch(id, *agent);
   return agent;
 }
 
 std::unique_ptr<Agent> Run::make_localizer(AgentId id) {
-  const auto i = static_cast<std::size_t>(id);
-  const AgentSpec& spec = *prepared_->specs[i];
-  LocalizerAgent::Options options =
-      localizer_options(spec, prepared_->journeys[i], prepared_->landmarks);
-  if (spec.talk.policy == "periodic") options.talk = talk_of(*prepared_, id, simulation_.seed());
-  return std::make_unique<LocalizerAgent>(*contexts_[i], *pose_witness_, std::move(options));
+  auto agent =
+      std::make_unique<LocalizerAgent>(*contexts_[static_cast<std::size_t>(id)], *pose_witness_,
+                                       localizer_options(*prepared_, id, simulation_.seed()));
+  pose_witness_->watch(id, *agent);
+  return agent;
 }
 
 std::unique_ptr<Agent> Run::make_explorer(AgentId id) {
-  const AgentSpec& spec = *prepared_->specs[static_cast<std::size_t>(id)];
-  ExplorerAgent::Options options = explorer_options(spec, prepared_->scenario.world);
-  if (spec.talk.policy == "periodic") options.talk = talk_of(*prepared_, id, simulation_.seed());
-  auto agent = std::make_unique<ExplorerAgent>(*contexts_[static_cast<std::size_t>(id)],
-                                               *grid_witness_, options);
+  auto agent = std::make_unique<ExplorerAgent>(
+      *contexts_[static_cast<std::size_t>(id)], grid_witness_->riders(),
+      explorer_options(*prepared_, id, simulation_.seed(), equip_with_looks(id)));
   grid_witness_->watch(id, agent->estimator());
   return agent;
 }
 
 std::unique_ptr<Agent> Run::make_forager(AgentId id) {
   const auto i = static_cast<std::size_t>(id);
-  const AgentSpec& spec = *prepared_->specs[i];
-  ForagerAgent::Options options =
-      forager_options(spec, prepared_->scenario, id, robots_[i], simulation_.seed());
-  if (spec.talk.policy == "periodic") options.talk = talk_of(*prepared_, id, simulation_.seed());
-  return std::make_unique<ForagerAgent>(*contexts_[i], *robot_world_, *trail_witness_, options);
+  auto agent = std::make_unique<ForagerAgent>(*contexts_[i], equip_with_body(id), *trail_witness_,
+                                              forager_options(*prepared_, id, simulation_.seed()));
+  trail_witness_->watch(id, robots_[i], *agent);
+  return agent;
 }
 
 RunEnd Run::run() {
@@ -344,6 +349,7 @@ void Run::keep_record_only() {
   life_.reset();
   lookouts_.clear();
   agents_.clear();
+  equipment_.clear();
   contexts_.clear();
   gossips_.clear();
   radio_.reset();

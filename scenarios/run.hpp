@@ -12,16 +12,18 @@
 #include <vector>
 
 #include "agents/catalog.hpp"
-#include "agents/estimator_agent.hpp"
-#include "agents/forager_agent.hpp"
+#include "agents/grids/area_look.hpp"
 #include "agents/grids/grid_witness.hpp"
-#include "agents/localizer_agent.hpp"
+#include "agents/journey.hpp"
 #include "agents/lookout.hpp"
 #include "agents/pose_witness.hpp"
+#include "agents/remote/distant_world.hpp"
 #include "agents/remote/stand_in.hpp"
-#include "agents/source_agent.hpp"
+#include "agents/robots/floor_body.hpp"
+#include "agents/sensors/target_scan.hpp"
 #include "agents/target_truth.hpp"
 #include "agents/track_witness.hpp"
+#include "agents/trails/trail_witness.hpp"
 #include "agents/witness.hpp"
 #include "net/movement.hpp"
 #include "scenarios/life.hpp"
@@ -62,9 +64,11 @@ struct PreparedScenario {
 std::shared_ptr<const PreparedScenario> prepare(Scenario scenario, const Catalog& catalog,
                                                 LogCache& logs);
 
-/// Whether each agent can live in a process of its own: agents of kind "estimator" and of the
-/// user's own kinds can, unless they are steered. @throws InputError that says which cannot, and
-/// why.
+/// Whether an agent decides where it goes.
+bool is_steered(const PreparedScenario& prepared, AgentId id);
+
+/// Whether each agent can live in a process of its own: all can, but explorers only where no
+/// ledgers are kept. @throws InputError that says why not.
 void require_can_live_elsewhere(const PreparedScenario& prepared, const Catalog& catalog);
 
 class Run {
@@ -75,7 +79,8 @@ class Run {
     DigestSink* ledger_digest = nullptr;  ///< not owned
     /// Makes what stands in for agents that live in other processes: all of them. Empty: all live
     /// here. See require_can_live_elsewhere().
-    std::function<std::unique_ptr<remote::StandIn>(Context&, EstimatorWitness*)> elsewhere = {};
+    std::function<std::unique_ptr<remote::StandIn>(Context&, const remote::Belongings&)> elsewhere =
+        {};
   };
   /// `catalog` must outlive the run.
   Run(std::shared_ptr<const PreparedScenario> prepared, const Catalog& catalog,
@@ -99,11 +104,29 @@ class Run {
   void keep_record_only();
 
  private:
+  /// What an agent has in the world beside its radio.
+  struct Equipment {
+    std::unique_ptr<PlotSource> scan;    // of trackers
+    std::unique_ptr<LookSource> looks;   // of explorers
+    std::unique_ptr<RobotBody> body;     // of foragers
+    std::unique_ptr<remote::Desk> desk;  // of agents elsewhere that need it
+  };
   void build_radio(std::uint64_t seed);
   void build_agents(const Catalog& catalog);
   std::unique_ptr<Agent> make_agent(AgentId id, const Catalog& catalog);
   std::unique_ptr<Agent> make_estimator(AgentId id);
   std::unique_ptr<Agent> make_stand_in(AgentId id);
+  std::unique_ptr<Agent> make_estimator_elsewhere(AgentId id);
+  std::unique_ptr<Agent> make_tracker_elsewhere(AgentId id);
+  std::unique_ptr<Agent> make_localizer_elsewhere(AgentId id);
+  std::unique_ptr<Agent> make_explorer_elsewhere(AgentId id);
+  std::unique_ptr<Agent> make_forager_elsewhere(AgentId id);
+  /// Who stands in for an agent that asks at this desk.
+  std::unique_ptr<Agent> at_desk(AgentId id, std::unique_ptr<remote::Desk> desk);
+  /// Null if it has no sensor. Kept in its equipment, as the next two.
+  PlotSource* equip_with_scan(AgentId id);
+  LookSource* equip_with_looks(AgentId id);
+  RobotBody& equip_with_body(AgentId id);
   std::unique_ptr<Agent> make_tracker(AgentId id);
   std::unique_ptr<Agent> make_localizer(AgentId id);
   std::unique_ptr<Agent> make_explorer(AgentId id);
@@ -114,7 +137,7 @@ class Run {
 
   // The order matters: what is below is destroyed first and may use what is above.
   std::shared_ptr<const PreparedScenario> prepared_;
-  std::function<std::unique_ptr<remote::StandIn>(Context&, EstimatorWitness*)> elsewhere_;
+  std::function<std::unique_ptr<remote::StandIn>(Context&, const remote::Belongings&)> elsewhere_;
   Simulation simulation_;
   std::vector<Subject> subjects_;                // with the truth of this run
   std::vector<TargetTruth> targets_;             // of this run, for trackers
@@ -131,6 +154,7 @@ class Run {
   std::unique_ptr<Radio> radio_;
   std::vector<std::unique_ptr<Gossip>> gossips_;  // by agent; null: it talks over the radio alone
   std::vector<std::unique_ptr<Context>> contexts_;
+  std::vector<Equipment> equipment_;  // by agent
   std::vector<std::unique_ptr<Agent>> agents_;
   std::vector<std::unique_ptr<Lookout>> lookouts_;  // by agent; null for those who look themselves
   std::unique_ptr<Life> life_;

@@ -4,6 +4,8 @@
 #include <limits>
 
 #include "scenarios/motion.hpp"
+#include "scenarios/run.hpp"
+#include "scenarios/talk.hpp"
 
 namespace hearsay {
 
@@ -51,8 +53,20 @@ std::unique_ptr<TrackWitness> make_track_witness(const Scenario& scenario, Simul
                             .double_tracks = wanted("double_tracks")});
 }
 
-TrackerAgent::Options tracker_options(const AgentSpec& spec,
-                                      const std::vector<TargetTruth>& targets) {
+std::optional<ScanSensor::Options> scan_sensor_of(const AgentSpec& spec) {
+  const SensorSpec& sensor = spec.sensor;
+  if (sensor.kind != "scan") return std::nullopt;
+  return ScanSensor::Options{
+      .sigma_along_m = sensor.sigma_m ? *sensor.sigma_m : sensor.sigma_along_m.value(),
+      .sigma_across_m = sensor.sigma_m ? *sensor.sigma_m : sensor.sigma_across_m.value(),
+      .range_max_m = sensor.range_max_m.value_or(std::numeric_limits<double>::infinity()),
+      .detection_probability = sensor.detection_probability.value_or(1.0),
+      .false_alarms_per_km2 = sensor.false_alarms_per_km2.value_or(0.0)};
+}
+
+TrackerAgent::Options tracker_options(const PreparedScenario& prepared, AgentId id,
+                                      std::uint64_t seed, PlotSource* scanner) {
+  const AgentSpec& spec = *prepared.specs[static_cast<std::size_t>(id)];
   const TrackerSpec& tracker = spec.tracker;
   TrackerAgent::Options options;
   options.tracker = {
@@ -70,15 +84,10 @@ TrackerAgent::Options tracker_options(const AgentSpec& spec,
       .apart_max = tracker.apart_max,
       .trail = tracker.trail_s ? Duration::seconds(*tracker.trail_s).nanoseconds() : 0,
   };
-  options.targets = targets;
+  if (spec.talk.policy == "periodic") options.talk = talk_of(prepared, id, seed);
   const SensorSpec& sensor = spec.sensor;
-  if (sensor.kind != "scan") return options;
-  options.sensor.emplace(ScanSensor::Options{
-      .sigma_along_m = sensor.sigma_m ? *sensor.sigma_m : sensor.sigma_along_m.value(),
-      .sigma_across_m = sensor.sigma_m ? *sensor.sigma_m : sensor.sigma_across_m.value(),
-      .range_max_m = sensor.range_max_m.value_or(std::numeric_limits<double>::infinity()),
-      .detection_probability = sensor.detection_probability.value_or(1.0),
-      .false_alarms_per_km2 = sensor.false_alarms_per_km2.value_or(0.0)});
+  if (!scanner) return options;
+  options.scanner = scanner;
   options.sensor_period = Duration::seconds(sensor.period_s);
   options.sensor_start = Time::at(Duration::seconds(sensor.start_s));
   if (sensor.end_s) options.sensor_end = Time::at(Duration::seconds(*sensor.end_s));

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "agents/track_witness.hpp"
@@ -10,6 +11,8 @@
 #include "scenarios/scenario.hpp"
 
 namespace hearsay {
+
+struct PreparedScenario;
 
 /// True if some agent tracks.
 bool has_trackers(const Scenario& scenario);
@@ -21,8 +24,11 @@ std::vector<TargetTruth> target_truths_of(const Scenario& scenario, Time end, st
 std::unique_ptr<TrackWitness> make_track_witness(const Scenario& scenario, Simulation& simulation,
                                                  const std::vector<TargetTruth>& targets);
 
-/// All but when it talks. `targets` outlive the agent.
-TrackerAgent::Options tracker_options(const AgentSpec& spec,
-                                      const std::vector<TargetTruth>& targets);
+/// Of an agent that tracks, in the run of this seed. `scanner`: null for who has no sensor.
+TrackerAgent::Options tracker_options(const PreparedScenario& prepared, AgentId id,
+                                      std::uint64_t seed, PlotSource* scanner);
+
+/// Whether it has a sensor, and which.
+std::optional<ScanSensor::Options> scan_sensor_of(const AgentSpec& spec);
 
 }  // namespace hearsay

@@ -1,5 +1,6 @@
 #include "agents/grids/grid_belief.hpp"
 
+#include <algorithm>
 #include <type_traits>
 
 #include "filters/grid/gain.hpp"
@@ -36,6 +37,12 @@ grid::Shape GridBelief::shape() const {
 
 std::span<const float> GridBelief::evidence() const {
   return std::visit([](const auto& g) { return g.evidence(); }, grid_);
+}
+
+void GridBelief::assign(std::span<const float> evidence) {
+  const std::span<float> own = std::visit([](auto& g) { return g.evidence_mutable(); }, grid_);
+  require(evidence.size() == own.size(), "GridBelief: evidence of a grid of another shape");
+  std::ranges::copy(evidence, own.begin());
 }
 
 void GridBelief::add(std::span<const grid::CellLook> looks) {

@@ -25,6 +25,9 @@ class GridBelief {
   grid::Shape shape() const;
   /// Of all cells by number, layers numbers a cell.
   std::span<const float> evidence() const;
+  /// In place of what it believes: evidence of a grid of the same shape. @throws BrokenInvariant
+  /// for another number of numbers.
+  void assign(std::span<const float> evidence);
 
   void add(std::span<const grid::CellLook> looks);
   void fuse(grid::Rule rule, const grid::Heard& heard, double omega);

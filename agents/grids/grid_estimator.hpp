@@ -11,8 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "agents/grids/grid_belief.hpp"
-#include "filters/grid/ledger.hpp"
+#include "agents/grids/grid_mind.hpp"
 #include "net/rider_pool.hpp"
 #include "sim/kernel/ids.hpp"
 
@@ -28,7 +27,7 @@ class GridRider final : public PooledRider<GridRider> {
   using PooledRider::PooledRider;
 };
 
-class GridEstimator {
+class GridEstimator final : public GridMind {
  public:
   struct Options {
     GridBelief::Options belief;
@@ -68,9 +67,8 @@ class GridEstimator {
   /// Comes back without its memory.
   void forget();
 
-  const GridBelief& belief() const { return belief_; }
-  /// How often each look is counted in the belief; of no look if ledgers are off.
-  const grid::LookLedger& ledger() const { return ledger_; }
+  const GridBelief& belief() const override { return belief_; }
+  const grid::LookLedger& ledger() const override { return ledger_; }
   const Counts& counts() const { return counts_; }
 
  private:

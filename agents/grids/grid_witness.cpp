@@ -75,8 +75,8 @@ std::span<const std::uint32_t> GridWitness::looked(AgentId agent,
   return indices_;
 }
 
-void GridWitness::watch(AgentId agent, const GridEstimator& estimator) {
-  watched_.push_back({agent, &estimator, std::vector<unsigned char>(truth_.size(), 0), {}});
+void GridWitness::watch(AgentId agent, const GridMind& mind) {
+  watched_.push_back({agent, &mind, std::vector<unsigned char>(truth_.size(), 0), {}});
 }
 
 void GridWitness::start() { schedule_sample(Time()); }
@@ -96,9 +96,10 @@ void GridWitness::sample() {
   if (!central_found_ && finds_all(central_)) central_found_ = now;
   if (wanted_.disagreement) sample_disagreement();
   for (Watched& watched : watched_) {
-    sample(watched.agent, watched.estimator->belief());
+    const GridBelief& belief = watched.mind->belief();
+    sample(watched.agent, belief);
     sample_ledger(watched);
-    if (!watched.found && finds_all(watched.estimator->belief())) watched.found = now;
+    if (!watched.found && finds_all(belief)) watched.found = now;
   }
 }
 
@@ -161,7 +162,7 @@ void GridWitness::sample_alarms(AgentId agent, const GridBelief& belief) {
 void GridWitness::sample_ledger(const Watched& watched) {
   if (!wanted_.multiplicity_mean && !wanted_.multiplicity_max && !wanted_.multiplicity_share)
     return;
-  const grid::LookMultiplicity counted = grid::multiplicity(watched.estimator->ledger(), book_);
+  const grid::LookMultiplicity counted = grid::multiplicity(watched.mind->ledger(), book_);
   const NameId whole = simulation_.record().name("");
   const bool any = counted.looks > 0;
   const auto leave = [&](bool wanted, const char* name, double value) {
@@ -176,8 +177,9 @@ void GridWitness::sample_disagreement() {
   lowest_.assign(truth_.size(), 1.0F);
   highest_.assign(truth_.size(), 0.0F);
   for (const Watched& watched : watched_) {
+    const GridBelief& belief = watched.mind->belief();
     for (std::size_t k = 0; k < truth_.size(); ++k) {
-      const auto p = watched.estimator->belief().probability(static_cast<int>(k));
+      const auto p = belief.probability(static_cast<int>(k));
       if (!p) continue;
       lowest_[k] = std::min(lowest_[k], static_cast<float>(*p));
       highest_[k] = std::max(highest_[k], static_cast<float>(*p));
@@ -217,7 +219,7 @@ void GridWitness::finish() {
   leave_seen();
   if (!options_.grids) return;
   leave_grid(central_agent, central_);
-  for (const Watched& watched : watched_) leave_grid(watched.agent, watched.estimator->belief());
+  for (const Watched& watched : watched_) leave_grid(watched.agent, watched.mind->belief());
 }
 
 void GridWitness::leave_seen() {

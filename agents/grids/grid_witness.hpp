@@ -43,7 +43,8 @@ class GridWitness {
   /// none if ledgers are off.
   std::span<const std::uint32_t> looked(AgentId agent, std::span<const grid::CellLook> looks);
   /// From now on `agent`'s grid is compared. Agents in ascending number.
-  void watch(AgentId agent, const GridEstimator& estimator);
+  /// `mind` outlives the witness.
+  void watch(AgentId agent, const GridMind& mind);
 
   /// Schedules the samples up to the end of the run. Once, before it starts.
   void start();
@@ -53,7 +54,7 @@ class GridWitness {
  private:
   struct Watched {
     AgentId agent;
-    const GridEstimator* estimator;
+    const GridMind* mind;
     std::vector<unsigned char> seen;  // 1 for each cell it looked at
     std::optional<Time> found;        // since when it has had an alarm at every target
   };

@@ -125,6 +125,8 @@ void pack(const Order& order, std::vector<std::byte>& bytes) {
   out.u32(order.lives);
   out.i64(order.stamp);
   out.f64(order.value);
+  out.bytes(order.content);
+  out.u64(order.number);
 }
 
 bool unpack(std::span<const std::byte> bytes, Order& order) {
@@ -150,6 +152,8 @@ bool unpack(std::span<const std::byte> bytes, Order& order) {
   order.lives = in.u32();
   order.stamp = in.i64();
   order.value = in.f64();
+  take_bytes(in, order.content);
+  order.number = in.u64();
   return in.done();
 }
 
@@ -157,6 +161,7 @@ void pack(const Answer& answer, std::vector<std::byte>& bytes) {
   bytes.clear();
   Packer out(bytes);
   out.u8(static_cast<std::uint8_t>(answer.kind));
+  out.bytes(answer.notes);
   out.count(answer.plans.size());
   for (const Plan& plan : answer.plans) put(out, plan);
   out.count(answer.rows.size());
@@ -172,6 +177,8 @@ void pack(const Answer& answer, std::vector<std::byte>& bytes) {
   out.u32(static_cast<std::uint32_t>(answer.subject));
   put(out, answer.belief);
   out.text(answer.failure);
+  out.u64(answer.number);
+  out.bytes(answer.content);
   out.count(answer.beliefs.size());
   for (const TrackedBelief& tracked : answer.beliefs) put(out, tracked);
   put(out, answer.counts);
@@ -180,6 +187,7 @@ void pack(const Answer& answer, std::vector<std::byte>& bytes) {
 bool unpack(std::span<const std::byte> bytes, Answer& answer) {
   Unpacker in(bytes);
   answer.kind = take_kind(in, AnswerKind::failed);
+  take_bytes(in, answer.notes);
   answer.plans.resize(in.count(18));
   for (Plan& plan : answer.plans) take(in, plan);
   answer.rows.resize(in.count(25));
@@ -196,6 +204,8 @@ bool unpack(std::span<const std::byte> bytes, Answer& answer) {
   answer.subject = static_cast<int>(in.u32());
   take(in, answer.belief);
   answer.failure = in.text();
+  answer.number = in.u64();
+  take_bytes(in, answer.content);
   answer.beliefs.resize(in.count(20));
   for (TrackedBelief& tracked : answer.beliefs) take(in, tracked);
   take(in, answer.counts);

@@ -64,16 +64,19 @@ struct Order {
   std::vector<std::byte> rider = {};  ///< pack(LedgerRider); empty: none
   /// outcome: it was acknowledged. up: it forgets. go_on: the packet was taken.
   bool yes = false;
-  std::uint32_t lives = 0;  ///< start: how often it began before, in this run
-  std::int64_t stamp = 0;   ///< report: of the present
-  double value = 0.0;       ///< go_on: the distance that was asked for
+  std::uint32_t lives = 0;              ///< start: how often it began before, in this run
+  std::int64_t stamp = 0;               ///< report: of the present
+  double value = 0.0;                   ///< go_on: the distance that was asked for
+  std::vector<std::byte> content = {};  ///< go_on: the answer to what was asked
+  std::uint64_t number = 0;             ///< go_on, out of lockstep: of what was asked
 };
 
 enum class AnswerKind : std::uint8_t {
   done,
   send,                 ///< calls: a packet is to be sent, …
   tell_of_empty_queue,  ///< … it wants to know when its queue is empty, …
-  distance,             ///< … how far from the truth is this belief?
+  distance,             ///< … how far from the truth is this belief? …
+  ask,                  ///< … a question about its world (agents/remote/distant_world)
   failed,               ///< an exception left its code
 };
 
@@ -95,6 +98,7 @@ struct Row {
 
 struct Answer {
   AnswerKind kind = AnswerKind::done;
+  std::vector<std::byte> notes = {};  ///< one after another, each with its length; come first
   std::vector<Plan> plans = {};
   std::vector<Row> rows = {};
   // send
@@ -109,6 +113,10 @@ struct Answer {
   int subject = 0;
   gaussian::Belief belief = {};
   std::string failure = {};
+  // ask
+  std::uint64_t number = 0;  ///< out of lockstep: counts what is asked
+  /// ask: the question. done, of a report: what its Reporter tells.
+  std::vector<std::byte> content = {};
   // done, of a report
   std::vector<TrackedBelief> beliefs = {};  ///< by subject
   EstimatorCounts counts = {};

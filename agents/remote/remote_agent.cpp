@@ -1,6 +1,7 @@
 #include "agents/remote/remote_agent.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -12,6 +13,18 @@ namespace {
 /// Calls before an answer is done; more, and the agent is taken for mad.
 constexpr int calls_max = 1'000'000;
 
+// Who keeps its own time may be a little ahead of where the world has it: it then goes to the same
+// place at the same speed.
+void steer(Context& context, const Leg& leg) {
+  const Point here = context.position();
+  if (leg.begin == context.now() && leg.from_m == here) return context.steer(leg);
+  const auto& v = leg.velocity_m_per_s;
+  const double speed_m_per_s = std::sqrt(v[0] * v[0] + v[1] * v[1]);
+  if (speed_m_per_s == 0.0 || leg.end == Time::never()) return context.stay();
+  const Point there = leg.at(leg.end);
+  context.go_to({there[0], there[1]}, speed_m_per_s);
+}
+
 }  // namespace
 
 Surroundings surroundings_of(const Context& context, bool knows_place) {
@@ -22,9 +35,39 @@ Surroundings surroundings_of(const Context& context, bool knows_place) {
   return around;
 }
 
-RemoteAgent::RemoteAgent(Context& context, Line& line, EstimatorWitness* witness,
+void serve(std::span<const std::byte> question, Context& context, Desk* desk,
+           std::vector<std::byte>& answer) {
+  answer.clear();
+  Unpacker in(question);
+  Packer out(answer);
+  const std::uint8_t kind = in.u8();
+  require(kind <= static_cast<std::uint8_t>(question_last), "an agent asks what nobody knows");
+  if (static_cast<Question>(kind) == Question::steer) {
+    steer(context, take_leg(in));
+  } else {
+    require(desk != nullptr, "an agent that has no desk asks something");
+    desk->answer(static_cast<Question>(kind), in, out);
+  }
+  require(in.done(), "a question of an agent is malformed");
+}
+
+void take_notes(std::span<const std::byte> notes, Context& context, Desk* desk,
+                std::vector<std::byte>& scratch) {
+  for (Unpacker in(notes); !in.done();) {
+    const std::span<const std::byte> note = in.bytes();
+    require(in.good(), "notes of an agent are malformed");
+    serve(note, context, desk, scratch);
+  }
+}
+
+RemoteAgent::RemoteAgent(Context& context, Line& line, const Belongings& world,
                          const Options& options)
-    : StandIn(context), line_(line), witness_(witness), options_(options), believer_(*this) {
+    : StandIn(context),
+      line_(line),
+      witness_(world.witness),
+      desk_(world.desk),
+      options_(options),
+      believer_(*this) {
   beliefs_.resize(static_cast<std::size_t>(options.subjects),
                   {gaussian::Belief::unknown(std::max(options.dimension, 1)), Ledger()});
   told_measurements_.resize(beliefs_.size(), 0);
@@ -123,6 +166,7 @@ bool RemoteAgent::exchange(const Order& order) {
     fall_silent();
     return false;
   }
+  take_notes(answer_.notes, context(), desk_, scratch_);
   take_rows();
   take_plans();
   return true;
@@ -164,6 +208,7 @@ void RemoteAgent::take_rows() {
 Order RemoteAgent::answer_call() {
   bool taken = false;
   double distance_m = 0.0;
+  scratch_.clear();
   switch (answer_.kind) {
     case AnswerKind::send:
       taken = send();
@@ -176,11 +221,15 @@ Order RemoteAgent::answer_call() {
               "a distance to nothing was asked for");
       distance_m = witness_->distance_error_m(answer_.subject, answer_.belief);
       break;
+    case AnswerKind::ask:
+      serve(answer_.content, context(), desk_, scratch_);
+      break;
     case AnswerKind::done:
     case AnswerKind::failed:
       break;
   }
   Order go_on = order(OrderKind::go_on);
+  go_on.content = scratch_;
   go_on.yes = taken;
   go_on.value = distance_m;
   return go_on;
@@ -208,6 +257,7 @@ void RemoteAgent::fall_silent() {
   for (TrackedBelief& tracked : beliefs_) {
     tracked = {gaussian::Belief::unknown(tracked.belief.dimension()), Ledger()};
   }
+  state_.clear();
   Simulation& simulation = context().simulation();
   for (const auto& [event, id] : plans_) simulation.cancel(id);
   plans_.clear();
@@ -215,7 +265,7 @@ void RemoteAgent::fall_silent() {
 }
 
 void RemoteAgent::refresh() {
-  if (fresh_ || silent_ || options_.subjects == 0) return;
+  if (fresh_ || silent_ || (options_.subjects == 0 && !desk_)) return;
   Order report = order(OrderKind::report);
   report.stamp = stamp_;
   give(std::move(report));
@@ -228,7 +278,16 @@ void RemoteAgent::refresh() {
           "an agent believes in something else than there is");
   beliefs_ = answer_.beliefs;
   counts_ = answer_.counts;
+  state_ = answer_.content;
   fresh_ = true;
+}
+
+// What it knows may change as time goes by, whatever happens: a robot drives on.
+std::span<const std::byte> RemoteAgent::state() {
+  if (told_at_ != context().now()) fresh_ = false;
+  told_at_ = context().now();
+  refresh();
+  return state_;
 }
 
 void RemoteAgent::Beliefs::advance(std::int64_t now) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "agents/estimator_witness.hpp"
+#include "agents/remote/distant_world.hpp"
 #include "agents/remote/protocol.hpp"
 #include "agents/remote/stand_in.hpp"
 
@@ -24,6 +25,15 @@ class Line {
   virtual void tell(const Order& order) = 0;
 };
 
+/// In a world: does what an agent elsewhere asks for, `question`, with its context or at its desk
+/// (null: it has none), and writes the answer.
+/// @throws BrokenInvariant for a question that is malformed, or asked by the wrong agent.
+void serve(std::span<const std::byte> question, Context& context, Desk* desk,
+           std::vector<std::byte>& answer);
+/// The same for notes, one after another. `scratch` is room.
+void take_notes(std::span<const std::byte> notes, Context& context, Desk* desk,
+                std::vector<std::byte>& scratch);
+
 /// What the agent of `context` can see, but for its neighbours. `knows_place`: the scenario says
 /// where it is.
 Surroundings surroundings_of(const Context& context, bool knows_place);
@@ -36,8 +46,8 @@ class RemoteAgent final : public StandIn {
     int dimension = 0;         ///< n of each
     bool moving = false;       ///< they move
   };
-  /// `witness`: null if there is nothing to estimate. All outlive this.
-  RemoteAgent(Context& context, Line& line, EstimatorWitness* witness, const Options& options);
+  /// `world`: what it has there, beside its radio. All outlive this.
+  RemoteAgent(Context& context, Line& line, const Belongings& world, const Options& options);
 
   void start() override;
   void on_measurement(const Measurement& measurement) override;
@@ -48,6 +58,7 @@ class RemoteAgent final : public StandIn {
   void on_up(bool forgets) override;
   void finish() override;
   Believer& believer() override { return believer_; }
+  std::span<const std::byte> state() override;
 
   /// Its process is gone; nothing is asked of it until join(). What it believes nobody knows.
   bool silent() const { return silent_; }
@@ -84,6 +95,7 @@ class RemoteAgent final : public StandIn {
 
   Line& line_;
   EstimatorWitness* witness_;
+  Desk* desk_;
   Options options_;
   Beliefs believer_;
   Answer answer_;
@@ -92,11 +104,14 @@ class RemoteAgent final : public StandIn {
   std::vector<std::size_t> told_measurements_;  // by subject
   std::vector<TrackedBelief> beliefs_;          // by subject, as last reported
   EstimatorCounts counts_;
+  std::vector<std::byte> state_;  // as last reported
+  std::vector<std::byte> scratch_;
   std::int64_t stamp_ = 0;
   std::uint32_t lives_ = 0;
   bool begun_ = false;
   bool silent_ = false;
-  bool fresh_ = false;  // beliefs_ are those of now
+  Time told_at_ = Time::never();  // state_ is as of then
+  bool fresh_ = false;            // beliefs_ and state_ are those of now
 };
 
 }  // namespace hearsay::remote

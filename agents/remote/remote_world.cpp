@@ -53,7 +53,7 @@ void RemoteWorld::look_around() {
 }
 
 void RemoteWorld::obey() {
-  const auto& [simulation, agent, receiver] = *parts_;
+  const auto& [simulation, agent, receiver, reporter] = *parts_;
   if (order_.kind == OrderKind::wake) {
     require(simulation.next_time() == order_.now, "it is not the time of what was planned");
     simulation.happen();
@@ -103,6 +103,10 @@ Packet RemoteWorld::packet() {
 }
 
 void RemoteWorld::report() {
+  if (parts_->reporter) {
+    Packer out(answer_.content);
+    parts_->reporter->report(out);
+  }
   if (!believer_) return;
   believer_->advance(order_.stamp);
   for (int s = 0; s < options_.subjects; ++s) answer_.beliefs.push_back(believer_->tracked(s));
@@ -120,7 +124,10 @@ bool RemoteWorld::answer(AnswerKind kind) {
 }
 
 void RemoteWorld::call(AnswerKind kind) {
+  // What it hears is in order_, which the answer overwrites.
+  std::vector<std::byte> heard = std::move(order_.bytes);
   if (!answer(kind)) throw WorldGone();
+  order_.bytes = std::move(heard);
   require(order_.kind == OrderKind::go_on, "an order came while the agent waited for an answer");
 }
 
@@ -132,10 +139,7 @@ bool RemoteWorld::send(AgentId, const Outgoing& packet) {
   answer_.acknowledged = packet.acknowledged;
   answer_.bytes.assign(packet.bytes.begin(), packet.bytes.end());
   if (packet.rider.get()) pack(static_cast<const LedgerRider&>(*packet.rider.get()), answer_.rider);
-  // What it hears is in order_, which the answer overwrites.
-  std::vector<std::byte> heard = std::move(order_.bytes);
   call(AnswerKind::send);
-  order_.bytes = std::move(heard);
   return order_.yes;
 }
 
@@ -152,6 +156,20 @@ double RemoteWorld::distance_error_m(int subject, const gaussian::Belief& belief
   call(AnswerKind::distance);
   return order_.value;
 }
+
+void RemoteWorld::steer(AgentId, const Leg& leg) {
+  Packer out = asking_.begin(Question::steer);
+  put(out, leg);
+  asking_.note();
+}
+
+std::span<const std::byte> RemoteWorld::ask(std::span<const std::byte> question) {
+  answer_.content.assign(question.begin(), question.end());
+  call(AnswerKind::ask);
+  return order_.content;
+}
+
+void RemoteWorld::note(std::span<const std::byte> note) { Packer(answer_.notes).bytes(note); }
 
 void RemoteWorld::on_scalar(const ScalarRow& row, Origin) {
   require(parts_ != nullptr, "an agent recorded something before it began");

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "agents/agent.hpp"
-#include "agents/estimator_witness.hpp"
 #include "agents/measurement.hpp"
+#include "agents/remote/distant_world.hpp"
 #include "agents/remote/protocol.hpp"
 
 namespace hearsay::remote {
@@ -35,10 +35,7 @@ class Superior {
   virtual bool exchange(const Answer& answer, Order& order) = 0;
 };
 
-class RemoteWorld final : public RadioPort,
-                          public EstimatorWitness,
-                          private RecordTap,
-                          private ScheduleWatch {
+class RemoteWorld final : public DistantWorld, private RecordTap, private ScheduleWatch {
  public:
   struct Options {
     bool ledgers = false;
@@ -56,6 +53,7 @@ class RemoteWorld final : public RadioPort,
     Simulation& simulation;
     Agent& agent;
     MeasurementReceiver* receiver = nullptr;  ///< null: it has no sensors
+    Reporter* reporter = nullptr;             ///< null: it tells of its beliefs alone
   };
   /// Obeys until it is dismissed. @return false if the world went away before, or took it for gone
   /// and lets it begin anew.
@@ -76,10 +74,11 @@ class RemoteWorld final : public RadioPort,
   LedgerPool* ledgers() override { return options_.ledgers ? &pool_ : nullptr; }
   EstimatorWorkspace& workspace() override { return workspace_; }
 
- private:
-  /// Thrown through the agent's code when its world is gone, or wants to hear no more of this life.
-  struct WorldGone {};
+  void steer(AgentId, const Leg& leg) override;
+  std::span<const std::byte> ask(std::span<const std::byte> question) override;
+  void note(std::span<const std::byte> note) override;
 
+ private:
   void on_scalar(const ScalarRow& row, Origin origin) override;
   void on_series(const SeriesRow& row, Origin origin) override;
   void on_event(Time time, AgentId agent, std::string_view kind, std::string_view detail) override;
@@ -102,6 +101,7 @@ class RemoteWorld final : public RadioPort,
   Answer answer_;
   Surroundings around_;
   std::vector<AgentId> neighbours_;
+  Asking asking_{*this};
   LedgerPool pool_;
   EstimatorWorkspace workspace_;
   RiderPtr rider_;  // of the packet that is being heard

@@ -46,10 +46,13 @@ std::size_t TrailWitness::index(int robot) const {
   return static_cast<std::size_t>(robot);
 }
 
-void TrailWitness::watch(Mind mind) {
-  require(static_cast<std::size_t>(mind.robot) == robots_.size(),
+void TrailWitness::watch(AgentId agent, int robot, const TrailMind& mind) {
+  require(static_cast<std::size_t>(robot) == robots_.size(),
           "trail witness: robots in ascending number");
-  robots_.emplace_back().mind = std::move(mind);
+  Robot& watched = robots_.emplace_back();
+  watched.agent = agent;
+  watched.robot = robot;
+  watched.mind = &mind;
 }
 
 void TrailWitness::sets_off(int robot) {
@@ -79,16 +82,16 @@ bool TrailWitness::arrived(int robot, trails::EventId event) {
     r.recovery_s = (now - *change).seconds();
   }
   r.set_off.reset();
-  simulation_.record().event(now, r.mind.agent, "arrived",
+  simulation_.record().event(now, r.agent, "arrived",
                              world_.name_of(event) + ' ' + std::to_string(r.trips.size()) + ' ' +
                                  std::to_string(trip.length_m) + ' ' +
                                  std::to_string(trip.duration_s));
   return true;
 }
 
-bool TrailWitness::all_arrived() const {
+bool TrailWitness::all_arrived() {
   return std::all_of(robots_.begin(), robots_.end(), [this](const Robot& robot) {
-    return robot.first_arrival || (options_.up && !options_.up(robot.mind.agent));
+    return robot.first_arrival || (options_.up && !options_.up(robot.agent));
   });
 }
 
@@ -109,7 +112,7 @@ void TrailWitness::told(int robot, std::span<const trails::Crumb> crumbs) {
       truth_.push_back({at.x_m, at.y_m});
     }
     if (!options_.crumbs) continue;
-    simulation_.record().event(simulation_.now(), r.mind.agent, "crumb",
+    simulation_.record().event(simulation_.now(), r.agent, "crumb",
                                world_.name_of(crumb.event) + ' ' + std::to_string(at.x_m) + ' ' +
                                    std::to_string(at.y_m) + ' ' + std::to_string(at.heading_rad) +
                                    ' ' + std::to_string(crumb.distance_s));
@@ -157,8 +160,8 @@ void TrailWitness::keep(AgentId agent, const char* name, double value) {
 void TrailWitness::sample() {
   last_sample_ = simulation_.now();
   for (const Robot& robot : robots_) {
-    const AgentId agent = robot.mind.agent;
-    const drive::Pose& pose = world_.pose(robot.mind.robot);
+    const AgentId agent = robot.agent;
+    const drive::Pose& pose = world_.pose(robot.robot);
     if (wanted_.pose) {
       keep(agent, "robot_x_m", pose.x_m);
       keep(agent, "robot_y_m", pose.y_m);
@@ -166,7 +169,7 @@ void TrailWitness::sample() {
     }
     if (wanted_.trips) keep(agent, "trips_so_far", static_cast<double>(robot.trips.size()));
     if (wanted_.crumbs) {
-      keep(agent, "crumbs_alive", static_cast<double>(robot.mind.store->size()));
+      keep(agent, "crumbs_alive", static_cast<double>(robot.mind->crumbs_known()));
     }
     if (wanted_.error || wanted_.hops) sample_crumbs(robot);
   }
@@ -184,11 +187,11 @@ void TrailWitness::sample() {
 }
 
 void TrailWitness::sample_crumbs(const Robot& robot) {
-  const drive::Pose& true_pose = world_.pose(robot.mind.robot);
-  const drive::Pose believed = robot.mind.believed();
+  const drive::Pose& true_pose = world_.pose(robot.robot);
+  const drive::Pose believed = robot.mind->believed_pose();
   double squares_m2 = 0.0, hops = 0.0;
   std::size_t crumbs = 0, wrong = 0, heard = 0;
-  robot.mind.store->for_each([&](const trails::Crumb& crumb) {
+  robot.mind->each_crumb([&](const trails::Crumb& crumb) {
     const auto number = book_.find(crumb.identity);
     if (!number) return;
     // Where it is from here, truly and as the robot has it.
@@ -201,13 +204,13 @@ void TrailWitness::sample_crumbs(const Robot& robot) {
     squares_m2 += square_m2;
     ++crumbs;
     if (square_m2 > options_.wrong_m * options_.wrong_m) ++wrong;
-    const std::uint8_t way = hops_of(robot.mind.robot, *number);
+    const std::uint8_t way = hops_of(robot.robot, *number);
     if (way > 0) hops += way, ++heard;
   });
   const auto mean = [](double sum, std::size_t n) {
     return n == 0 ? none : sum / static_cast<double>(n);
   };
-  const AgentId agent = robot.mind.agent;
+  const AgentId agent = robot.agent;
   keep(agent, "crumb_error_m", std::sqrt(mean(squares_m2, crumbs)));
   keep(agent, "crumbs_wrong_share", mean(static_cast<double>(wrong), crumbs));
   keep(agent, "hearsay_hops_mean", mean(hops, heard));
@@ -215,7 +218,7 @@ void TrailWitness::sample_crumbs(const Robot& robot) {
 
 void TrailWitness::leave(const Robot& robot) {
   Record& record = simulation_.record();
-  const AgentId agent = robot.mind.agent;
+  const AgentId agent = robot.agent;
   const auto scalar = [&](const char* name, double value) {
     record.scalar(agent, record.name(name), value);
   };
@@ -238,7 +241,7 @@ void TrailWitness::leave(const Robot& robot) {
   scalar("blocked_share", robot.blocked_s / whole_s);
   const auto change = world_.changed();
   if (change) scalar("recovery_s", robot.recovered_from == change ? robot.recovery_s : never);
-  const trails::TrailCounts& counts = robot.mind.store->counts();
+  const trails::TrailCounts counts = robot.mind->crumbs_counted();
   scalar("crumbs_taken", static_cast<double>(counts.taken));
   scalar("crumbs_known", static_cast<double>(counts.known));
   scalar("crumbs_late", static_cast<double>(counts.late));

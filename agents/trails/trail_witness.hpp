@@ -13,13 +13,13 @@
 #include <vector>
 
 #include "agents/robots/robot_world.hpp"
+#include "agents/trails/trail_account.hpp"
 #include "filters/trails/identity_table.hpp"
-#include "filters/trails/store.hpp"
 #include "sim/kernel/simulation.hpp"
 
 namespace hearsay {
 
-class TrailWitness {
+class TrailWitness final : public TrailAccount {
  public:
   struct Options {
     Duration period;                  ///< > 0: samples at 0, period, … and at the end
@@ -28,9 +28,6 @@ class TrailWitness {
     double wrong_m = 1.0;             ///< crumbs with more error are wrong, > 0
     std::function<bool(AgentId)> up;  ///< whether an agent is; none: all always are
   };
-  /// How a robot spent a step.
-  enum class Doing { following, exploring, searching, panicking, waiting };
-  static constexpr int doings = 5;
   /// Trips of which each is a subject of its own, at most.
   static constexpr std::uint64_t iterations_max = 1000;
   /// Trips an hour are those of this time before, s.
@@ -39,29 +36,18 @@ class TrailWitness {
   /// Both outlive the witness.
   TrailWitness(Simulation& simulation, const RobotWorld& world, Options options);
 
-  /// What a robot knows, and where it believes it is.
-  struct Mind {
-    AgentId agent;
-    int robot;
-    const trails::MetricStore* store;
-    std::function<drive::Pose()> believed;
-  };
-  /// Robots in ascending number of agents, 0 … n − 1 of the floor.
-  void watch(Mind mind);
+  /// From now on the robot of an agent, and what it knows, are looked at. Robots in ascending
+  /// number of agents, 0 … n − 1 of the floor. `mind` outlives the witness.
+  void watch(AgentId agent, int robot, const TrailMind& mind);
 
-  /// A trip begins: the robot sets off.
-  void sets_off(int robot);
-  void drove(int robot, double length_m, bool blocked, Doing doing, double dt_s);
-  /// The trip ends, if one has begun: whether it had.
-  bool arrived(int robot, trails::EventId event);
-  /// It dropped a crumb here; of what it told, or was silent about.
-  void dropped(int robot);
-  void told(int robot, std::span<const trails::Crumb> crumbs);
-  void gave_up(int robot) { robots_[index(robot)].dropped.clear(); }
-  /// It learned crumbs from another robot.
-  void learned(int robot, trails::RobotId from, std::span<const trails::Identity> crumbs);
-  /// Whether all robots that are up have had a trip.
-  bool all_arrived() const;
+  void sets_off(int robot) override;
+  void drove(int robot, double length_m, bool blocked, Doing doing, double dt_s) override;
+  bool arrived(int robot, trails::EventId event) override;
+  void dropped(int robot) override;
+  void told(int robot, std::span<const trails::Crumb> crumbs) override;
+  void gave_up(int robot) override { robots_[index(robot)].dropped.clear(); }
+  void learned(int robot, trails::RobotId from, std::span<const trails::Identity> crumbs) override;
+  bool all_arrived() override;
 
   /// Schedules the samples up to the end of the run. Once, before it starts.
   void start();
@@ -73,7 +59,9 @@ class TrailWitness {
     double length_m, duration_s;
   };
   struct Robot {
-    Mind mind;
+    AgentId agent;
+    int robot;
+    const TrailMind* mind;
     double distance_m = 0.0;
     std::array<double, doings> spent_s{};
     double blocked_s = 0.0;

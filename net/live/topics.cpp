@@ -36,7 +36,7 @@ struct PlainKind {
 };
 constexpr std::array<PlainKind, 5> plain_kinds = {{
     {"position", Type::stamped_gaussian},
-    {"tracks", Type::trajectory},
+    {"tracks", Type::stamped_gaussian},
     {"trails", Type::trajectory},
     {"trail", Type::trail},
     {"acknowledgement", Type::acknowledgement},

@@ -8,6 +8,7 @@
 #include "agents/estimator_agent.hpp"
 #include "agents/localizer_agent.hpp"
 #include "agents/lookout.hpp"
+#include "agents/pose_witness.hpp"
 #include "sim/math/functions.hpp"
 #include "tools/memory/memory.hpp"
 

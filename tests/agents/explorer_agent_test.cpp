@@ -86,7 +86,14 @@ class Bed {
       contexts_.push_back(std::make_unique<Context>(
           simulation, *radio, Context::Identity{.id = id, .name = "e", .kind = "explorer"},
           Context::Service{.steers = one.steered ? movement_.get() : nullptr}));
-      agents.push_back(std::make_unique<ExplorerAgent>(*contexts_.back(), *witness_, one.options));
+      ExplorerAgent::Options options = one.options;
+      if (options.sensor) {
+        looks_.push_back(
+            std::make_unique<AreaLook>(*contexts_.back(), *witness_, *options.sensor, area));
+        options.looks = looks_.back().get();
+      }
+      agents.push_back(
+          std::make_unique<ExplorerAgent>(*contexts_.back(), witness_->riders(), options));
       radio->attach(id, *agents.back());
       witness_->watch(id, agents.back()->estimator());
     }
@@ -150,6 +157,7 @@ class Bed {
 
  private:
   std::vector<std::unique_ptr<Context>> contexts_;
+  std::vector<std::unique_ptr<AreaLook>> looks_;
 
  public:
   std::vector<std::unique_ptr<ExplorerAgent>> agents;

@@ -1,6 +1,8 @@
 // Localizers with a radio between them, and one who listens in.
 #include "agents/localizer_agent.hpp"
 
+#include "agents/pose_witness.hpp"
+
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
@@ -75,6 +77,7 @@ struct Pair {
       options.rule = setting.rule;
       if (id == 0) options.talk = setting.talk;
       agents.push_back(std::make_unique<LocalizerAgent>(*contexts.back(), *witness, options));
+      witness->watch(id, *agents.back());
       radio.attach(id, *agents.back());
     }
     radio.attach(2, listener);

@@ -4,6 +4,7 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -17,6 +18,19 @@ namespace {
 using localization::Pose;
 using localization::PoseFilter;
 using localization::RelativeSighting;
+
+/// What a robot believes, made by hand.
+class Mind final : public PoseMind {
+ public:
+  explicit Mind(std::function<const PoseFilter&()> present) : present_(std::move(present)) {}
+  std::optional<PoseBelief> own_pose() override {
+    const PoseFilter& own = present_();
+    return PoseBelief{own.pose(0), own.covariance(0)};
+  }
+
+ private:
+  std::function<const PoseFilter&()> present_;
+};
 
 /// Robots that stand still for 10 s, and what the witness of them leaves.
 class Watched : public testing::Test {
@@ -41,6 +55,10 @@ class Watched : public testing::Test {
     options.series_period = period;
     witness_ = std::make_unique<PoseWitness>(simulation_, options);
     return *witness_;
+  }
+  void watch(AgentId agent, std::function<const PoseFilter&()> present) {
+    minds_.push_back(std::make_unique<Mind>(std::move(present)));
+    witness_->watch(agent, *minds_.back());
   }
   void run() {
     witness_->start();
@@ -67,6 +85,7 @@ class Watched : public testing::Test {
 
   Simulation simulation_;
   std::vector<Journey> journeys_;
+  std::vector<std::unique_ptr<Mind>> minds_;
   std::unique_ptr<PoseWitness> witness_;
 };
 
@@ -84,8 +103,7 @@ TEST_F(Watched, SamplesOfAKnownErrorGiveWhatFollowsFromIt) {
   P << 0.04, 0.01, 0.002, 0.01, 0.09, -0.003, 0.002, -0.003, 0.01;
   const PoseFilter first = filter_at({1.3, 1.6, -3.1}, P), then = filter_at({0.5, 2.0, 3.0}, P);
   witness({journey({1.0, 2.0, 3.1}, {0_s, 4_s, 8_s, 10_s})});
-  witness_->watch(
-      0, [&]() -> const PoseFilter& { return simulation_.now() < Time::at(5_s) ? first : then; });
+  watch(0, [&]() -> const PoseFilter& { return simulation_.now() < Time::at(5_s) ? first : then; });
   run();
   const double turn = 2.0 * math::pi - 6.2;  // from 3.1 on to −3.1
   const Eigen::Vector3d e1(0.3, -0.4, turn), e2(-0.5, 0.0, -0.1);
@@ -114,8 +132,8 @@ TEST_F(Watched, AfterTheTruthEndedThereIsNothingToCompareWith) {
   const Eigen::Matrix3d P = Eigen::Matrix3d::Identity();
   const PoseFilter right = filter_at(pose, P), wrong = filter_at({9.0, 9.0, 1.0}, P);
   witness({journey(pose, {0_s, 4_s})});
-  witness_->watch(
-      0, [&]() -> const PoseFilter& { return simulation_.now() < Time::at(5_s) ? right : wrong; });
+  watch(0,
+        [&]() -> const PoseFilter& { return simulation_.now() < Time::at(5_s) ? right : wrong; });
   run();
   EXPECT_EQ(series(0, "nees").size(), 2U);
   EXPECT_EQ(series(central_agent, "nees").size(), 2U);
@@ -148,7 +166,7 @@ TEST_F(Watched, TheCentralFilterOfOneRobotIsThatOfTheRobotAlone) {
     });
     return alone;
   };
-  witness_->watch(0, present);
+  watch(0, present);
   const Eigen::Vector2d place(4.0, 1.0);
   for (int k = 1; k <= 12; ++k) {  // off the grid of the odometry; the last ones after its gap
     simulation_.schedule(Time() + 773_ms * k, Phase::measure, [&] {

@@ -24,8 +24,10 @@ struct Pair {
       TrackerAgent::Options options;
       options.tracker = {.q = 0.1, .sigma_max = 50, .tracks_max = 100, .rule = rule};
       options.tracker.trail = trails[id].nanoseconds();
-      if (id == 0) options.sensor.emplace(ScanSensor::Options{});
-      options.targets = targets;
+      if (id == 0) {
+        scan = std::make_unique<TargetScan>(*contexts.back(), ScanSensor::Options{}, targets);
+        options.scanner = scan.get();
+      }
       options.talk = PeriodicTalk{.period = 1_s, .phase = 500_ms};
       agents.push_back(std::make_unique<TrackerAgent>(*contexts.back(), options));
       radio.attach(id, *agents.back());
@@ -55,6 +57,7 @@ struct Pair {
   Radio radio;
   std::vector<TargetTruth> targets;
   std::vector<std::unique_ptr<Context>> contexts;
+  std::unique_ptr<TargetScan> scan;
   std::vector<std::unique_ptr<TrackerAgent>> agents;
 };
 
@@ -206,7 +209,7 @@ TEST(TrackWitness, JudgesWithoutBeingNoticed) {
                                            .gospa_m = true,
                                            .missed_targets = true});
     for (AgentId id = 0; id < 2; ++id) {
-      witness.watch(id, pair.agents[static_cast<std::size_t>(id)]->tracker());
+      witness.watch(id, *pair.agents[static_cast<std::size_t>(id)]);
     }
     witness.start();
     pair.start();

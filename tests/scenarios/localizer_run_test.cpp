@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "tests/scenarios/elsewhere_bed.hpp"
 #include "tests/scenarios/log_bed.hpp"
 
 namespace hearsay {
@@ -122,6 +123,10 @@ TEST_F(LocalizerRun, TheSameSeedGivesTheSameRunAndAnotherRuleAnother) {
   EXPECT_GT(first.digested.size(), 1000U);
   EXPECT_TRUE(first.digested == again.digested);
   EXPECT_FALSE(first.digested == run(with(random, "\"naive\"", "\"ci-trace\"")).digested);
+}
+
+TEST_F(LocalizerRun, RobotsInProcessesOfTheirOwnGiveTheSameRun) {
+  expect_same(prepared(scenario()));
 }
 
 TEST_F(LocalizerRun, ATruthThatBeginsLateIsNamed) {

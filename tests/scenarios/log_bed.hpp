@@ -9,18 +9,11 @@
 
 #include "scenarios/run.hpp"
 #include "sim/kernel/error.hpp"
+#include "tests/scenarios/run_values.hpp"
 #include "tests/scenarios/with.hpp"
 #include "tests/sim/world/small_dataset.hpp"
 
 namespace hearsay {
-
-/// All that a record feeds to its digest.
-struct DigestedBytes : DigestSink {
-  void update(std::span<const std::byte> bytes) override {
-    for (const std::byte byte : bytes) all += static_cast<char>(byte);
-  }
-  std::string all;
-};
 
 class LogBed : public mrclam::SmallDataset {
  protected:

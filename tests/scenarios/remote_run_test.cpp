@@ -1,71 +1,12 @@
 // Agents that live elsewhere, in lockstep with their world, do what they do within one process: the
-// same digest. Here each agent is a thread; what passes between them passes as bytes.
+// same digest.
 #include <gtest/gtest.h>
 
-#include <condition_variable>
-#include <filesystem>
-#include <mutex>
-#include <span>
-#include <thread>
-#include <utility>
-
-#include "agents/remote/remote_agent.hpp"
-#include "agents/remote/remote_world.hpp"
-#include "scenarios/solo.hpp"
-#include "tests/scenarios/run_values.hpp"
+#include "sim/kernel/error.hpp"
+#include "tests/scenarios/elsewhere_bed.hpp"
 
 namespace hearsay {
 namespace {
-
-using remote::Answer;
-using remote::AnswerKind;
-using remote::Order;
-using remote::OrderKind;
-
-/// Two threads that hand each other bytes, in turn.
-class Handover final : public remote::Line, public remote::Superior {
- public:
-  bool exchange(const Order& order, Answer& answer) override {
-    tell(order);
-    std::unique_lock lock(mutex_);
-    turn_.wait(lock, [this] { return has_answer_ || hung_up_; });
-    if (hung_up_) return false;
-    has_answer_ = false;
-    return unpack(bytes_, answer);
-  }
-  void tell(const Order& order) override {
-    const std::scoped_lock lock(mutex_);
-    pack(order, bytes_);
-    has_order_ = true;
-    turn_.notify_all();
-  }
-  bool exchange(const Answer& answer, Order& order) override {
-    {
-      const std::scoped_lock lock(mutex_);
-      pack(answer, bytes_);
-      has_answer_ = true;
-      turn_.notify_all();
-    }
-    return wait_for(order);
-  }
-  bool wait_for(Order& order) {
-    std::unique_lock lock(mutex_);
-    turn_.wait(lock, [this] { return has_order_; });
-    has_order_ = false;
-    return unpack(bytes_, order);
-  }
-  void hang_up() {
-    const std::scoped_lock lock(mutex_);
-    hung_up_ = true;
-    turn_.notify_all();
-  }
-
- private:
-  std::mutex mutex_;
-  std::condition_variable turn_;
-  std::vector<std::byte> bytes_;
-  bool has_order_ = false, has_answer_ = false, hung_up_ = false;
-};
 
 std::shared_ptr<const PreparedScenario> prepared_of(const std::string& file,
                                                     const std::vector<Override>& set = {}) {
@@ -74,69 +15,9 @@ std::shared_ptr<const PreparedScenario> prepared_of(const std::string& file,
   return prepare(load_scenario(file, set, known_names(catalog)), catalog, logs);
 }
 
-struct Result {
-  std::string run, ledger;
-  RunEnd end;
-};
-
-Result result_of(const std::shared_ptr<const PreparedScenario>& prepared, Run::Options options) {
-  static const Catalog catalog;
-  DigestedBytes digest, ledger;
-  options.digest = &digest;
-  options.ledger_digest = &ledger;
-  Run run(prepared, catalog, options);
-  const RunEnd end = run.run();
-  return {std::move(digest.all), std::move(ledger.all), end};
-}
-
-/// The life of an agent in its thread.
-void live(const std::shared_ptr<const PreparedScenario>& prepared, AgentId id, std::uint64_t seed,
-          Handover& way) {
-  static const Catalog catalog;
-  Order first;
-  if (!way.wait_for(first) || first.kind == OrderKind::dismiss) return;
-  const bool ledgers = prepared->scenario.record.ledger == "on";
-  remote::RemoteWorld world(
-      way, first, {.ledgers = ledgers, .subjects = static_cast<int>(prepared->subjects.size())});
-  Solo solo(
-      prepared, catalog, world, world,
-      {.id = id, .seed = seed, .now = first.now, .tap = &world.tap(), .plans = &world.plans()});
-  if (!world.serve({solo.simulation(), solo.agent(), solo.receiver()})) way.hang_up();
-}
-
-Result elsewhere(const std::shared_ptr<const PreparedScenario>& prepared, std::uint64_t seed) {
-  std::vector<std::unique_ptr<Handover>> ways;
-  std::vector<std::thread> threads;
-  Run::Options options{.seed = seed};
-  options.elsewhere = [&](Context& context, EstimatorWitness* witness) {
-    Handover& way = *ways[static_cast<std::size_t>(context.id())];
-    return std::make_unique<remote::RemoteAgent>(context, way, witness,
-                                                 remote_options(*prepared, context.id()));
-  };
-  for (std::size_t i = 0; i < prepared->specs.size(); ++i) {
-    ways.push_back(std::make_unique<Handover>());
-    threads.emplace_back([&prepared, &way = *ways.back(), i, seed] {
-      live(prepared, static_cast<AgentId>(i), seed, way);
-    });
-  }
-  const Result result = result_of(prepared, options);
-  for (const auto& way : ways) way->tell({.kind = OrderKind::dismiss});
-  for (std::thread& thread : threads) thread.join();
-  return result;
-}
-
 void expect_same(const std::string& file, const std::vector<Override>& set = {}) {
-  const auto prepared = prepared_of(std::string(HEARSAY_SOURCE_DIR) + "/" + file, set);
-  for (const std::uint64_t seed : {1u, 7u}) {
-    const Result here = result_of(prepared, {.seed = seed});
-    const Result there = elsewhere(prepared, seed);
-    ASSERT_TRUE(here.end.ok()) << here.end.message;
-    EXPECT_TRUE(there.end.ok()) << there.end.message;
-    EXPECT_GT(here.run.size(), 1000u);
-    EXPECT_TRUE(here.run == there.run) << file;
-    EXPECT_TRUE(here.ledger == there.ledger) << file;
-    EXPECT_EQ(here.end.events, there.end.events) << file;
-  }
+  SCOPED_TRACE(file);
+  expect_same(prepared_of(std::string(HEARSAY_SOURCE_DIR) + "/" + file, set));
 }
 
 using Set = std::vector<Override>;
@@ -177,6 +58,55 @@ TEST(RemoteRun, HasItWhereAgentsFailAndComeBack) {
 TEST(RemoteRun, HasItForSourcesThatWantToKnowWhenTheirQueueIsEmpty) {
   expect_same("scenarios/radio/shared.toml", Set{{"duration_s", "2.0"}});
   expect_same("scenarios/radio/delay.toml", Set{{"duration_s", "2.0"}});
+}
+
+TEST(RemoteRun, HasItForRobotsThatLayAndFollowTrails) {
+  const Set all_series{{"duration_s", "120.0"},
+                       {"record.series", R"(["trips_so_far", "trips_an_hour", "crumbs_alive",
+                         "crumb_error_m", "crumbs_wrong_share", "hearsay_hops_mean", "robot_x_m",
+                         "trip_length_m"])"},
+                       {"record.crumbs", "\"on\""}};
+  expect_same("scenarios/lost/corridor.toml", all_series);
+  expect_same("scenarios/lost/convergence.toml", Set{{"duration_s", "60.0"}});
+  expect_same("scenarios/lost/crowding.toml", Set{{"duration_s", "40.0"}, {"agents.count", "6"}});
+  for (const char* navigation : {"explore", "map"}) {
+    Set other = all_series;
+    other.push_back({"agents.trails.navigation", '"' + std::string(navigation) + '"'});
+    expect_same("scenarios/lost/corridor.toml", other);
+  }
+}
+
+TEST(RemoteRun, HasItForRobotsThatFailAndComeBack) {
+  for (const char* kind : {"sleep", "reboot"}) {
+    const std::string dropouts =
+        "[{ kind = \"" + std::string(kind) + "\", mean_up_s = 40.0, mean_down_s = 20.0 }]";
+    expect_same("scenarios/lost/corridor.toml",
+                Set{{"duration_s", "100.0"}, {"dropouts", dropouts}});
+  }
+}
+
+TEST(RemoteRun, HasItForTrackers) {
+  expect_same("scenarios/tracking/crossing.toml", Set{{"duration_s", "60.0"}});
+  expect_same("scenarios/tracking/crossing.toml",
+              Set{{"duration_s", "60.0"}, {"agents.tracker.trail_s", "5.0"}});
+}
+
+TEST(RemoteRun, HasItForExplorersWithoutLedgers) {
+  const Set no_ledger{{"duration_s", "60.0"}, {"record.ledger", "\"off\""}};
+  for (const char* file : {"explore", "beta", "search", "mow"}) {
+    expect_same("scenarios/merino/ch4-" + std::string(file) + ".toml", no_ledger);
+  }
+}
+
+TEST(RemoteRun, RefusesExplorersWithLedgersByKeyAndValue) {
+  const auto prepared =
+      prepared_of(std::string(HEARSAY_SOURCE_DIR) + "/scenarios/merino/ch4-explore.toml");
+  try {
+    require_can_live_elsewhere(*prepared, Catalog());
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("record.ledger"), std::string::npos) << error.what();
+  }
 }
 
 }  // namespace

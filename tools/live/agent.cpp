@@ -68,13 +68,19 @@ std::string in_lockstep(const std::shared_ptr<const PreparedScenario>& prepared,
                               {.ledgers = prepared->scenario.record.ledger == "on",
                                .subjects = subjects,
                                .memory = memory});
-    Solo solo(prepared, catalog, world, world,
-              {.id = options.id,
-               .seed = welcome.seed,
-               .now = first.now,
-               .tap = &world.tap(),
-               .plans = &world.plans()});
-    if (world.serve({solo.simulation(), solo.agent(), solo.receiver()})) return {};
+    try {
+      Solo solo(prepared, catalog, world,
+                {.id = options.id,
+                 .seed = welcome.seed,
+                 .now = first.now,
+                 .tap = &world.tap(),
+                 .plans = &world.plans()});
+      if (world.serve({solo.simulation(), solo.agent(), solo.receiver(), solo.reporter()})) {
+        return {};
+      }
+    } catch (const remote::WorldGone&) {
+      // It asked something before it began, and nobody answered.
+    }
     // The world took this process for gone, and has it join again.
     if (!world.next_life()) return reactor.stopped() ? "" : gone;
     first = *world.next_life();
@@ -128,8 +134,9 @@ std::string run_agent(const std::shared_ptr<const PreparedScenario>& prepared,
     return in_lockstep(prepared, catalog, options, *welcome, superior, reactor,
                        memory ? &*memory : nullptr);
   }
-  OwnTime own_time(prepared, options, *welcome, port, reactor, memory ? &*memory : nullptr);
-  return own_time.serve(catalog, orders, status);
+  OwnTime own_time(prepared, options, *welcome, port, reactor, {orders, answers},
+                   memory ? &*memory : nullptr);
+  return own_time.serve(catalog, status);
 }
 
 }  // namespace hearsay::fleet

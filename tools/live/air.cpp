@@ -7,6 +7,7 @@
 #include "filters/gaussian/message_forms.hpp"
 #include "filters/gaussian/trajectory_codec.hpp"
 #include "filters/gaussian/trajectory_factor.hpp"
+#include "filters/trails/codec.hpp"
 #include "scenarios/estimators.hpp"
 
 namespace hearsay::fleet {
@@ -15,6 +16,9 @@ namespace {
 using gaussian::Belief;
 using gaussian::Definiteness;
 using gaussian::MessageForm;
+
+/// The kind of what is known to those who say it alone.
+constexpr const char* octets = "octets";
 
 bool is_sound(const Belief& belief) {
   const Definiteness kind = gaussian::definiteness(belief);
@@ -84,7 +88,13 @@ bool is_sound_trajectory(std::span<const std::byte> bytes) {
 
 Tongue tongue_of(const PreparedScenario& prepared, AgentId id) {
   const AgentSpec& spec = *prepared.specs[static_cast<std::size_t>(id)];
-  if (spec.kind != "estimator") return {"octets", live::States::still};
+  if (spec.kind == "forager") return {"trail", live::States::still};
+  if (spec.kind == "localizer") return {"position", live::States::moving};
+  if (spec.kind == "explorer") return {"grid", live::States::still};
+  if (spec.kind == "tracker") {
+    return {spec.tracker.trail_s ? "trails" : "tracks", live::States::moving};
+  }
+  if (spec.kind != "estimator") return {octets, live::States::still};
   if (spec.estimator.kind == "trajectory-gaussian") {
     return {message_kind(MessageForm::plain), live::States::trajectory};
   }
@@ -101,6 +111,11 @@ std::vector<Tongue> tongues_of(const PreparedScenario& prepared) {
 }
 
 bool is_sound(const Tongue& tongue, std::span<const std::byte> message) {
+  if (tongue.kind == "trail") return trails::MetricPacket::parse(message).has_value();
+  if (tongue.kind == "trails") return is_sound_trajectory(message);
+  if (tongue.kind == "tracks" || tongue.kind == "position") {
+    return is_sound(MessageForm::plain, true, message);
+  }
   const std::optional<MessageForm> form = form_named(tongue.kind);
   if (!form) return true;
   if (tongue.states == live::States::trajectory) return is_sound_trajectory(message);
@@ -115,14 +130,12 @@ AirOut::AirOut(live::Port& port, std::string partition)
     : port_(port), partition_(std::move(partition)) {}
 
 bool AirOut::write(const Tongue& tongue, const Parcel& parcel) {
-  const bool known = form_named(tongue.kind).has_value();
-  const live::TopicId topic = known ? live::air_topic(tongue.kind, tongue.states, parcel.message)
-                                    : live::air_topics("octets", live::States::still).front();
+  const live::TopicId topic = live::air_topic(tongue.kind, tongue.states, parcel.message);
   auto found = writers_.find(topic.name);
   if (found == writers_.end()) {
     found = writers_.emplace(topic.name, port_.writer(topic, partition_)).first;
   }
-  if (known) return found->second.write_packet(parcel.envelope, parcel.message);
+  if (tongue.kind != octets) return found->second.write_packet(parcel.envelope, parcel.message);
   live::pack_octets(parcel.envelope, parcel.kind, parcel.message, bytes_);
   return found->second.write(bytes_);
 }
@@ -137,7 +150,7 @@ AirIn::AirIn(live::Port& port, const std::string& partition, const std::vector<T
 
 bool AirIn::take(Parcel& parcel) {
   for (Ear& ear : ears_) {
-    if (form_named(ear.tongue.kind) ? hear(ear, parcel) : hear_octets(ear, parcel)) return true;
+    if (ear.tongue.kind == octets ? hear_octets(ear, parcel) : hear(ear, parcel)) return true;
   }
   return false;
 }

@@ -20,7 +20,8 @@ struct Tongue {
   auto operator<=>(const Tongue&) const = default;
 };
 /// Of each agent of a scenario, by number: those who estimate speak the kinds of their rules; what
-/// others say is known to themselves alone, and travels as octets.
+/// sources and agents of a user's own kinds say is known to themselves alone, and travels as
+/// octets.
 std::vector<Tongue> tongues_of(const PreparedScenario& prepared);
 Tongue tongue_of(const PreparedScenario& prepared, AgentId id);
 

@@ -18,9 +18,9 @@ LockstepWorld::LockstepWorld(const PreparedScenario& prepared, Roster& roster, R
 }
 
 std::unique_ptr<remote::StandIn> LockstepWorld::stand_in(Context& context,
-                                                         EstimatorWitness* witness) {
+                                                         const remote::Belongings& world) {
   const auto i = static_cast<std::size_t>(context.id());
-  auto agent = std::make_unique<remote::RemoteAgent>(context, *lines_[i], witness,
+  auto agent = std::make_unique<remote::RemoteAgent>(context, *lines_[i], world,
                                                      remote_options(prepared_, context.id()));
   agents_[i] = agent.get();
   return agent;

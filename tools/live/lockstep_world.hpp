@@ -17,7 +17,7 @@ class LockstepWorld {
   LockstepWorld(const PreparedScenario& prepared, Roster& roster, Reactor& reactor);
 
   /// For Run::Options::elsewhere.
-  std::unique_ptr<remote::StandIn> stand_in(Context& context, EstimatorWitness* witness);
+  std::unique_ptr<remote::StandIn> stand_in(Context& context, const remote::Belongings& world);
 
   /// Lets the run happen, from its start to its end or until the process is asked to stop. Agents
   /// that went away may come back meanwhile. @return how far it came.

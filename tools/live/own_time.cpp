@@ -15,6 +15,8 @@ using remote::Order;
 using remote::OrderKind;
 
 constexpr auto patience = 100ms;  ///< the longest it sleeps
+/// Orders that wait while it waits for an answer.
+constexpr std::size_t orders_max = 10'000;
 /// Rows that a report takes; more wait for the next.
 constexpr std::size_t report_rows_max = 1000;
 
@@ -35,11 +37,12 @@ std::string air_in_partition(const AgentOptions& options) {
 
 OwnTime::OwnTime(std::shared_ptr<const PreparedScenario> prepared, const AgentOptions& options,
                  const live::Welcome& welcome, live::Port& port, Reactor& reactor,
-                 remote::MemoryStore* memory)
+                 const Frames& frames, remote::MemoryStore* memory)
     : prepared_(std::move(prepared)),
       options_(options),
       welcome_(welcome),
       reactor_(reactor),
+      frames_(frames),
       memory_(memory),
       tongue_(tongue_of(*prepared_, options.id)),
       air_out_(port, air_out_partition(options)),
@@ -54,8 +57,9 @@ OwnTime::OwnTime(std::shared_ptr<const PreparedScenario> prepared, const AgentOp
 
 OwnTime::~OwnTime() = default;
 
-std::string OwnTime::serve(const Catalog& catalog, live::Reader& orders,
+std::string OwnTime::serve(const Catalog& catalog,
                            const std::function<void(const std::string&)>& status) {
+  const std::string gone = fmt::format("the world of fleet '{}' is gone", options_.fleet.fleet);
   WallTime next_status;
   while (!reactor_.stopped()) {
     while (clock_.take(bytes_)) {
@@ -65,16 +69,17 @@ std::string OwnTime::serve(const Catalog& catalog, live::Reader& orders,
       }
     }
     if (solo_) catch_up();
-    if (!take_orders(catalog, orders)) return {};
+    if (!world_gone_ && !take_orders(catalog)) return {};
+    if (world_gone_) return reactor_.stopped() ? std::string() : gone;
     if (solo_) {
       take_measurements();
       take_packets();
+      if (life_over_ || world_gone_) continue;
       if (solo_->simulation().failed()) return failure();
       if (memory_) memory_->save(solo_->agent());
     }
-    if (presence_.gone(orders.writers_alive() > 0)) {
-      return fmt::format("the world of fleet '{}' is gone", options_.fleet.fleet);
-    }
+    if (!answer_.notes.empty()) answer(remote::AnswerKind::done);
+    if (presence_.gone(frames_.orders.writers_alive() > 0)) return gone;
     if (WallClock::now() >= next_status) {
       next_status = WallClock::now() + 500ms;
       status(status_text());
@@ -107,11 +112,22 @@ void OwnTime::look_around(const Order& order) {
   around_ = order.surroundings;
 }
 
-bool OwnTime::take_orders(const Catalog& catalog, live::Reader& orders) {
-  live::Frame frame;
+bool OwnTime::take_order(Order& order) {
+  while (frames_.orders.take(bytes_)) {
+    if (live::decode(bytes_, frame_) && remote::unpack(frame_.content, order)) return true;
+  }
+  return false;
+}
+
+bool OwnTime::take_orders(const Catalog& catalog) {
   Order order;
-  while (orders.take(bytes_)) {
-    if (!live::decode(bytes_, frame) || !remote::unpack(frame.content, order)) continue;
+  while (!world_gone_) {
+    if (!waiting_.empty()) {
+      order = std::move(waiting_.front());
+      waiting_.pop_front();
+    } else if (!take_order(order)) {
+      break;
+    }
     if (!obey(catalog, order)) return false;
   }
   return true;
@@ -121,12 +137,18 @@ void OwnTime::begin(const Catalog& catalog, const Order& order) {
   set_clock(order.now.nanoseconds());
   // Above those of the process that had its place before.
   number_ = std::max(number_, std::uint64_t{order.lives} << 32);
-  RadioPort& radio = *this;
-  EstimatorWitness& witness = *this;
   RecordTap* const tap = this;
   const Solo::Options own{
       .id = options_.id, .seed = welcome_.seed, .now = now(), .tap = tap, .plans = nullptr};
-  solo_ = std::make_unique<Solo>(prepared_, catalog, radio, witness, own);
+  leg_.reset();
+  life_over_ = false;
+  try {
+    remote::DistantWorld& world = *this;
+    solo_ = std::make_unique<Solo>(prepared_, catalog, world, own);
+  } catch (const remote::WorldGone&) {
+    solo_.reset();  // it asked something before it began
+    return;
+  }
   at_once([this, &order] { remote::begin_life(solo_->agent(), memory_, order.lives); });
 }
 
@@ -239,8 +261,55 @@ bool OwnTime::send(AgentId sender, const Outgoing& packet) {
 }
 
 Point OwnTime::position(AgentId) const {
+  if (leg_) return leg_->at(std::min(solo_->simulation().now(), leg_->end));
   require(around_.position_m.has_value(), "radio: nobody knows where agents stand");
   return *around_.position_m;
+}
+
+void OwnTime::steer(AgentId, const Leg& leg) {
+  leg_ = leg;
+  Packer out = asking_.begin(remote::Question::steer);
+  remote::put(out, leg);
+  asking_.note();
+}
+
+void OwnTime::note(std::span<const std::byte> note) { Packer(answer_.notes).bytes(note); }
+
+void OwnTime::answer(remote::AnswerKind kind) {
+  answer_.kind = kind;
+  frame_.agent = report_.agent;
+  remote::pack(answer_, frame_.content);
+  answer_ = {};
+  live::encode(frame_, bytes_);
+  while (!frames_.answers.write(bytes_)) {
+    world_gone_ = reactor_.stopped() || presence_.gone(frames_.orders.writers_alive() > 0);
+    if (world_gone_) return;
+    reactor_.wait(WallClock::now());
+  }
+}
+
+std::span<const std::byte> OwnTime::ask(std::span<const std::byte> question) {
+  answer_.content.assign(question.begin(), question.end());
+  answer_.number = ++asked_;
+  answer(remote::AnswerKind::ask);
+  while (!world_gone_ && !life_over_) {
+    Order order;
+    while (take_order(order)) {
+      if (order.kind == OrderKind::go_on && order.number == asked_) {
+        look_around(order);
+        answered_ = std::move(order);
+        return answered_.content;
+      }
+      // After these nobody answers any more.
+      life_over_ = order.kind == OrderKind::start || order.kind == OrderKind::dismiss;
+      waiting_.push_back(std::move(order));
+      if (life_over_) throw remote::WorldGone();
+    }
+    world_gone_ = reactor_.stopped() || waiting_.size() > orders_max ||
+                  presence_.gone(frames_.orders.writers_alive() > 0);
+    if (!world_gone_) reactor_.wait(WallClock::now() + patience);
+  }
+  throw remote::WorldGone();
 }
 
 // Nobody here knows the truth.
@@ -255,6 +324,11 @@ std::int64_t OwnTime::stamp_now() {
 
 void OwnTime::report(bool last) {
   at_once([&] {
+    if (solo_->reporter()) {
+      Packer out(answer_.content);
+      solo_->reporter()->report(out);
+      answer(remote::AnswerKind::done);
+    }
     if (!believer_) return;
     believer_->advance(stamp_now());
     report_.beliefs.clear();

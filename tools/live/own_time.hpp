@@ -3,14 +3,15 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "agents/catalog.hpp"
-#include "agents/estimator_witness.hpp"
 #include "agents/remote/remote_world.hpp"
 #include "net/live/messages.hpp"
 #include "scenarios/solo.hpp"
@@ -21,17 +22,22 @@
 
 namespace hearsay::fleet {
 
-class OwnTime final : private RadioPort, private EstimatorWitness, private RecordTap {
+/// The way to the world for orders, and for what is asked and told.
+struct Frames {
+  live::Reader& orders;
+  live::Writer& answers;
+};
+
+class OwnTime final : private remote::DistantWorld, private RecordTap {
  public:
   /// All outlive this.
   OwnTime(std::shared_ptr<const PreparedScenario> prepared, const AgentOptions& options,
-          const live::Welcome& welcome, live::Port& port, Reactor& reactor,
+          const live::Welcome& welcome, live::Port& port, Reactor& reactor, const Frames& frames,
           remote::MemoryStore* memory);
   ~OwnTime() override;
 
   /// Until it is dismissed or asked to stop. @return what went wrong, or nothing.
-  std::string serve(const Catalog& catalog, live::Reader& orders,
-                    const std::function<void(const std::string&)>& status);
+  std::string serve(const Catalog& catalog, const std::function<void(const std::string&)>& status);
 
  private:
   bool send(AgentId sender, const Outgoing& packet) override;
@@ -41,6 +47,9 @@ class OwnTime final : private RadioPort, private EstimatorWitness, private Recor
   std::span<const AgentId> neighbours(AgentId) override { return neighbours_; }
   bool neighbours_change() const override { return around_.hears_strangers; }
   Point position(AgentId) const override;
+  void steer(AgentId, const Leg& leg) override;
+  std::span<const std::byte> ask(std::span<const std::byte> question) override;
+  void note(std::span<const std::byte> note) override;
   void watch(AgentId, Believer& believer) override { believer_ = &believer; }
   double distance_error_m(int subject, const gaussian::Belief& belief) override;
   LedgerPool* ledgers() override { return nullptr; }
@@ -55,7 +64,10 @@ class OwnTime final : private RadioPort, private EstimatorWitness, private Recor
   void begin(const Catalog& catalog, const remote::Order& order);
   /// @return false once it is dismissed.
   bool obey(const Catalog& catalog, const remote::Order& order);
-  bool take_orders(const Catalog& catalog, live::Reader& orders);
+  bool take_orders(const Catalog& catalog);
+  bool take_order(remote::Order& order);
+  /// Tells the world what there is to tell: notes, and a question or a state.
+  void answer(remote::AnswerKind kind);
   void take_measurements();
   void take_packets();
   void hear(const Parcel& parcel);
@@ -71,6 +83,7 @@ class OwnTime final : private RadioPort, private EstimatorWitness, private Recor
   const AgentOptions& options_;
   live::Welcome welcome_;
   Reactor& reactor_;
+  Frames frames_;
   remote::MemoryStore* memory_;       // null: it has none
   Presence presence_{world_grace_s};  // of the world
   Tongue tongue_;
@@ -82,6 +95,15 @@ class OwnTime final : private RadioPort, private EstimatorWitness, private Recor
   std::unique_ptr<Solo> solo_;  // from the order to start on
   Believer* believer_ = nullptr;
   remote::Surroundings around_;
+  std::optional<Leg> leg_;  // of one that is steered: where it was last told to go
+  remote::Asking asking_{*this};
+  remote::Answer answer_;
+  std::deque<remote::Order> waiting_;  // orders that came while it waited for an answer
+  remote::Order answered_;             // … and the answer
+  std::uint64_t asked_ = 0;
+  live::Frame frame_;
+  bool world_gone_ = false;
+  bool life_over_ = false;  // nobody answers any more; the order that says why waits
   std::vector<AgentId> neighbours_;
   EstimatorWorkspace workspace_;
   live::Report report_;

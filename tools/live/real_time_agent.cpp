@@ -93,7 +93,7 @@ void RealTimeAgent::on_up(bool forgets) {
 void RealTimeAgent::finish() { ask(OrderKind::finish, last_wait_s); }
 
 bool RealTimeAgent::take() {
-  bool any = false;
+  bool any = take_answers();
   while (take_report()) any = true;
   while (air_in_.take(parcel_)) {
     any = true;
@@ -106,6 +106,42 @@ bool RealTimeAgent::take() {
     say(parcel_);
   }
   return any;
+}
+
+bool RealTimeAgent::take_answers() {
+  bool any = false;
+  while (member_.answers.take(bytes_)) {
+    if (!live::decode(bytes_, frame_) || !remote::unpack(frame_.content, answer_)) {
+      ++dropped_;
+      continue;
+    }
+    any = true;
+    if (silent_ || !member_.ours) continue;
+    answer(answer_);
+  }
+  return any;
+}
+
+// What it does by its own time, it does in the world when the world hears of it.
+void RealTimeAgent::answer(const remote::Answer& question) {
+  remote::take_notes(question.notes, context(), options_.desk, scratch_);
+  if (question.kind == remote::AnswerKind::done) {
+    if (question.content.empty()) return;
+    state_ = question.content;
+    state_told_ = true;
+    return;
+  }
+  if (question.kind != remote::AnswerKind::ask) return;
+  remote::serve(question.content, context(), options_.desk, scratch_);
+  Order go_on = order(OrderKind::go_on);
+  go_on.number = question.number;
+  go_on.content = scratch_;
+  tell(go_on);
+}
+
+std::span<const std::byte> RealTimeAgent::state() {
+  believer_.advance(stamp_);
+  return state_;
 }
 
 bool RealTimeAgent::can_be_sent(const live::Envelope& envelope) const {
@@ -188,6 +224,7 @@ void RealTimeAgent::fall_silent() {
   for (TrackedBelief& tracked : beliefs_) {
     tracked.belief = gaussian::Belief::unknown(tracked.belief.dimension());
   }
+  state_.clear();
   context().record_event("silent", "its process is gone");
 }
 
@@ -198,8 +235,12 @@ void RealTimeAgent::ask(OrderKind kind, double wait_s) {
   Order report = order(kind);
   report.stamp = stamp_;
   tell(report);
+  state_told_ = options_.desk == nullptr;
   const WallTime until = WallClock::now() + wall(wait_s);
-  while (!take_report()) {
+  for (bool reported = false;;) {
+    take_answers();  // it may wait for an answer before it can report
+    reported = take_report() || reported;
+    if (reported && state_told_) return;
     if (WallClock::now() >= until || reactor_.stopped() || !member_.alive()) {
       ++late_reports_;
       return;

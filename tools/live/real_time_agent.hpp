@@ -15,7 +15,8 @@ class RealTimeAgent final : public remote::StandIn {
  public:
   struct Options {
     remote::RemoteAgent::Options what;
-    std::vector<Tongue> tongues;  ///< of each agent of the fleet
+    remote::Desk* desk = nullptr;  ///< null: it asks for nothing. Not owned
+    std::vector<Tongue> tongues;   ///< of each agent of the fleet
   };
   /// All outlive this.
   RealTimeAgent(Context& context, live::Port& port, Member& member, Reactor& reactor,
@@ -28,6 +29,7 @@ class RealTimeAgent final : public remote::StandIn {
   void on_up(bool forgets) override;
   void finish() override;
   Believer& believer() override { return believer_; }
+  std::span<const std::byte> state() override;
 
   AgentId id() const { return context().id(); }
   /// Takes what came from the agent: packets go to its radio, reports into the record. Within an
@@ -63,6 +65,9 @@ class RealTimeAgent final : public remote::StandIn {
 
   remote::Order order(remote::OrderKind kind);
   void tell(const remote::Order& order);
+  /// Takes what it asks and tells of its world. @return whether anything came.
+  bool take_answers();
+  void answer(const remote::Answer& question);
   bool can_be_sent(const live::Envelope& envelope) const;
   void say(const Parcel& parcel);
   bool take_report();
@@ -83,6 +88,10 @@ class RealTimeAgent final : public remote::StandIn {
   std::vector<AgentId> told_neighbours_;
   std::vector<TrackedBelief> beliefs_;
   EstimatorCounts counts_;
+  std::vector<std::byte> state_;  // as last told
+  live::Frame frame_;
+  remote::Answer answer_;
+  std::vector<std::byte> scratch_;
   std::int64_t stamp_ = 0;
   Time asked_ = Time::never();  // when it was last asked what it believes
   std::uint64_t number_ = 0;    // of measurements and packets to it
@@ -90,6 +99,7 @@ class RealTimeAgent final : public remote::StandIn {
   std::uint32_t lives_ = 0;
   std::uint64_t late_reports_ = 0, missed_ = 0, dropped_ = 0;
   bool silent_ = false;
+  bool state_told_ = false;  // since it was last asked
 };
 
 }  // namespace hearsay::fleet

@@ -28,11 +28,13 @@ RealTimeWorld::RealTimeWorld(const PreparedScenario& prepared, live::Port& port,
   agents_.resize(static_cast<std::size_t>(roster.size()), nullptr);
 }
 
-std::unique_ptr<remote::StandIn> RealTimeWorld::stand_in(Context& context, EstimatorWitness*) {
+std::unique_ptr<remote::StandIn> RealTimeWorld::stand_in(Context& context,
+                                                         const remote::Belongings& world) {
   const AgentId id = context.id();
   auto agent =
       std::make_unique<RealTimeAgent>(context, port_, roster_.member(id), reactor_,
                                       RealTimeAgent::Options{.what = remote_options(prepared_, id),
+                                                             .desk = world.desk,
                                                              .tongues = tongues_of(prepared_)});
   agents_[static_cast<std::size_t>(id)] = agent.get();
   return agent;

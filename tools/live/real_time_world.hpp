@@ -20,7 +20,7 @@ class RealTimeWorld {
                 Reactor& reactor, live::Writer& clock, const WorldOptions& options);
 
   /// For Run::Options::elsewhere.
-  std::unique_ptr<remote::StandIn> stand_in(Context& context, EstimatorWitness* witness);
+  std::unique_ptr<remote::StandIn> stand_in(Context& context, const remote::Belongings& world);
   /// Lets the run happen, from its start to its end or until the process is asked to stop.
   RunEnd drive(Run& run, const std::function<void(const std::string&)>& status);
   void dismiss();

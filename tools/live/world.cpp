@@ -22,8 +22,8 @@ void live_through(World& world, const std::shared_ptr<const PreparedScenario>& p
                   const std::function<void(const std::string&)>& status, WorldResult& result) {
   Xxh3Digest digest, ledger_digest;
   Run::Options how{.seed = options.seed, .digest = &digest, .ledger_digest = &ledger_digest};
-  how.elsewhere = [&world](Context& context, EstimatorWitness* witness) {
-    return world.stand_in(context, witness);
+  how.elsewhere = [&world](Context& context, const remote::Belongings& belongings) {
+    return world.stand_in(context, belongings);
   };
   result.run = std::make_unique<Run>(prepared, catalog, how);
   result.end = result.run->finish(world.drive(*result.run, status));

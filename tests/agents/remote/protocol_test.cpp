@@ -48,11 +48,14 @@ Order full_order() {
   order.lives = 2;
   order.stamp = std::numeric_limits<std::int64_t>::min();
   order.value = -0.25;
+  order.content = Bytes(11, std::byte{9});
+  order.number = 12;
   return order;
 }
 
 Answer full_answer() {
   Answer answer{.kind = AnswerKind::send};
+  answer.notes = Bytes(9, std::byte{8});
   answer.plans = {{.event = 5, .time = Time::nanoseconds(8), .phase = Phase::act},
                   {.event = 6, .cancelled = true}};
   answer.rows = {{.kind = Row::Kind::event, .name = "a", .text = "b"},
@@ -71,6 +74,8 @@ Answer full_answer() {
   answer.subject = 1;
   answer.belief = belief(8);
   answer.failure = "it failed";
+  answer.number = 13;
+  answer.content = Bytes(2, std::byte{6});
   answer.beliefs = {{belief(2), ledger()}, {belief(2), Ledger()}};
   answer.counts = {.measurements = 1, .fusions = 2, .refused = 4, .fusion_gain_max = 0.5};
   return answer;

@@ -20,6 +20,23 @@ namespace {
 using Doing = TrailWitness::Doing;
 constexpr double never = std::numeric_limits<double>::infinity();
 
+/// What a robot knows, made by hand.
+class Mind final : public TrailMind {
+ public:
+  Mind(const trails::MetricStore& store, std::function<drive::Pose()> believed)
+      : store_(store), believed_(std::move(believed)) {}
+  std::size_t crumbs_known() const override { return store_.size(); }
+  trails::TrailCounts crumbs_counted() const override { return store_.counts(); }
+  void each_crumb(const std::function<void(const trails::Crumb&)>& look) const override {
+    store_.for_each(look);
+  }
+  drive::Pose believed_pose() const override { return believed_(); }
+
+ private:
+  const trails::MetricStore& store_;
+  std::function<drive::Pose()> believed_;
+};
+
 /// Robots on an empty floor whose ways, thoughts and talks are made by hand.
 class TrailsWatched : public testing::Test {
  protected:
@@ -42,10 +59,8 @@ class TrailsWatched : public testing::Test {
       world_->add({.at = plan::Point{5.0, 2.0 + 2.0 * robot}, .heading_rad = 0.0}, draws);
       stores_.emplace_back(trails::StoreOptions{.robot = static_cast<trails::RobotId>(robot)});
       // Agents are numbered otherwise than robots.
-      witness_->watch({.agent = 10 + robot,
-                       .robot = robot,
-                       .store = &stores_.back(),
-                       .believed = [this, robot] { return believed_.at(robot); }});
+      minds_.emplace_back(stores_.back(), [this, robot] { return believed_.at(robot); });
+      witness_->watch(10 + robot, robot, minds_.back());
       believed_[robot] = world_->pose(robot);
     }
   }
@@ -127,6 +142,7 @@ class TrailsWatched : public testing::Test {
   std::unique_ptr<RobotWorld> world_;
   std::unique_ptr<TrailWitness> witness_;
   std::deque<trails::MetricStore> stores_;
+  std::deque<Mind> minds_;
   std::map<int, drive::Pose> believed_;
 };
 
@@ -351,8 +367,8 @@ TEST(TrailWitness, TripsAnHourAreThoseOfTheLastTenMinutes) {
   TrailWitness witness(simulation, world, {.period = 100_s, .series = {"trips_an_hour"}});
   world.add({}, Stream(1, Purpose("start"), Entity::agent(0)));
   trails::MetricStore store({});
-  witness.watch(
-      {.agent = 0, .robot = 0, .store = &store, .believed = [] { return drive::Pose(); }});
+  const Mind mind(store, [] { return drive::Pose(); });
+  witness.watch(0, 0, mind);
   std::vector<std::int64_t> arrivals;
   Stream draws(3, Purpose("arrivals"), Entity::agent(0));
   for (std::int64_t s = 7; s < 2000; s += 1 + static_cast<std::int64_t>(draws.below(90))) {

@@ -59,7 +59,7 @@ TEST(Topics, AKindOfGaussianBeliefsHasOneForEachWayStatesAre) {
 TEST(Topics, OtherKindsDoNotDependOnThat) {
   for (const States states : {States::still, States::moving, States::trajectory}) {
     EXPECT_EQ(only("position", states), (TopicId{Type::stamped_gaussian, "hearsay_air_position"}));
-    EXPECT_EQ(only("tracks", states), (TopicId{Type::trajectory, "hearsay_air_tracks"}));
+    EXPECT_EQ(only("tracks", states), (TopicId{Type::stamped_gaussian, "hearsay_air_tracks"}));
     EXPECT_EQ(only("trails", states), (TopicId{Type::trajectory, "hearsay_air_trails"}));
     EXPECT_EQ(only("trail", states), (TopicId{Type::trail, "hearsay_air_trail"}));
     EXPECT_EQ(only("my kind-1", states), (TopicId{Type::octets, "hearsay_air_my_kind_1"}));

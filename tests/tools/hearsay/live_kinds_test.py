@@ -1,0 +1,72 @@
+"""Agents that have more of their world than a radio, as processes: robots, trackers, explorers."""
+import unittest
+
+from bed import SOURCE
+from live_bed import LiveBed
+
+CORRIDOR = SOURCE / "scenarios/lost/corridor.toml"
+CROSSING = SOURCE / "scenarios/tracking/crossing.toml"
+EXPLORE = SOURCE / "scenarios/merino/ch4-explore.toml"
+NO_LEDGER = ["--set", "record.ledger=off"]
+
+
+class Lockstep(LiveBed):
+    def expect_same(self, *words):
+        self.assertEqual(self.live(*words, "--lockstep", "--digest"), self.good("run", *words, "--digest"))
+
+    def test_robots_with_trails_have_the_digest_of_the_simulated_run(self):
+        self.expect_same(CORRIDOR, "--set", "duration_s=60")
+
+    def test_trackers_have_it(self):
+        self.expect_same(CROSSING, "--set", "duration_s=40")
+
+    def test_explorers_have_it(self):
+        self.expect_same(EXPLORE, "--set", "duration_s=40", *NO_LEDGER)
+
+    def test_explorers_with_ledgers_are_refused(self):
+        fleet = self.start("live", EXPLORE)
+        self.ends(fleet, 2)
+        self.assertIn("record.ledger: explorers that live in processes of their own keep no ledgers", fleet.trouble())
+
+
+class RealTime(LiveBed):
+    def expect_names(self, *words):
+        """The record is one like any other."""
+        self.good("run", *words, "--out", "run.db")
+        for table in ["agent", "scalar", "series"]:
+            names = f"SELECT DISTINCT name FROM {table} ORDER BY name"
+            self.assertEqual(self.rows("live.db", names), self.rows("run.db", names))
+
+    def test_robots_lay_and_follow_trails(self):
+        words = [CORRIDOR, "--set", "duration_s=300"]
+        self.live(*words, "--speed", 20, "--out", "live.db")
+        self.expect_names(*words)
+        for robot in range(4):
+            self.assertGreater(self.value("live.db", robot, "distance_driven_m"), 20.0)
+            self.assertGreater(self.value("live.db", robot, "crumbs_taken"), 20)
+            self.assertEqual(self.value("live.db", robot, "messages_refused"), 0)
+        # Who has seen no place lays no crumbs.
+        for name in ["crumbs_laid", "packets_delivered"]:
+            self.assertGreater(sum(self.value("live.db", robot, name) for robot in range(4)), 200)
+        self.assertGreaterEqual(self.value("live.db", -1, "trips"), 1)
+
+    def test_trackers_find_what_there_is(self):
+        words = [CROSSING, "--set", "duration_s=100"]
+        self.live(*words, "--speed", 20, "--out", "live.db")
+        self.expect_names(*words)
+        for tracker in range(4):
+            self.assertGreater(self.value("live.db", tracker, "tracks_confirmed"), 1)
+            self.assertGreater(self.value("live.db", tracker, "fusions"), 5)
+
+    def test_explorers_look_where_they_fly(self):
+        words = [EXPLORE, "--set", "duration_s=100", *NO_LEDGER]
+        self.live(*words, "--speed", 20, "--out", "live.db")
+        self.expect_names(*words)
+        for explorer in range(4):
+            self.assertGreater(self.value("live.db", explorer, "distance_flown_m"), 50.0)
+            self.assertGreater(self.value("live.db", explorer, "cells_seen_share"), 0.1)
+            self.assertGreater(self.value("live.db", explorer, "fusions"), 3)
+
+
+if __name__ == "__main__":
+    unittest.main()

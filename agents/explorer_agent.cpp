@@ -35,15 +35,17 @@ void ExplorerAgent::turn_to(const Point& place) {
 }
 
 Process ExplorerAgent::look() {
-  Time next = options_.sensor_start;
-  for (std::uint64_t count = 0; next <= options_.sensor_end; ++count) {
+  const Time start = options_.sensor_start;
+  const Duration period = options_.sensor_period;
+  for (std::uint64_t count = instants_before(context().now(), start, period);; ++count) {
+    const Time next = start + period * static_cast<std::int64_t>(count);
+    if (next > options_.sensor_end) co_return;
     co_await context().sleep_until(next, Phase::measure);
     turn_to(context().position());
     if (context().up()) {
       const Looks seen = options_.looks->look(heading_rad_, count);
       estimator_.looked(seen.looks, seen.indices);
     }
-    next = next + options_.sensor_period;
   }
 }
 
@@ -76,7 +78,7 @@ Process ExplorerAgent::explore() {
 }
 
 Process ExplorerAgent::talk() {
-  for (std::uint64_t tick = 0;; ++tick) {
+  for (std::uint64_t tick = options_.talk->next_tick(context().now());; ++tick) {
     co_await context().sleep_until(options_.talk->tick(tick));
     if (!context().up()) continue;
     const std::span<const AgentId> now = context().neighbours();

@@ -51,8 +51,8 @@ void ForagerAgent::start() {
 }
 
 Process ForagerAgent::control() {
-  for (std::int64_t k = 0;; ++k) {
-    co_await context().sleep_until(Time::at(options_.period * k));
+  for (std::uint64_t k = instants_before(context().now(), Time(), options_.period);; ++k) {
+    co_await context().sleep_until(Time::at(options_.period * static_cast<std::int64_t>(k)));
     if (context().up()) {
       step();
     } else {
@@ -62,7 +62,7 @@ Process ForagerAgent::control() {
 }
 
 Process ForagerAgent::talk() {
-  for (std::uint64_t tick = 0;; ++tick) {
+  for (std::uint64_t tick = options_.talk->next_tick(context().now());; ++tick) {
     co_await context().sleep_until(options_.talk->tick(tick));
     if (context().up()) tell();
   }

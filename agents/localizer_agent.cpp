@@ -64,7 +64,9 @@ LocalizerAgent::Companion& LocalizerAgent::companion(AgentId id) {
 }
 
 Process LocalizerAgent::look() {
+  const Time begin = context().now();
   for (const Encounter& encounter : options_.encounters) {
+    if (encounter.time < begin) continue;  // it was not there
     if (encounter.time > context().now()) {
       co_await context().sleep_until(encounter.time, Phase::measure);
     }
@@ -105,9 +107,8 @@ void LocalizerAgent::meet_companion(const Encounter& encounter, const RelativeSi
 }
 
 Process LocalizerAgent::talk() {
-  for (std::uint64_t tick = 0;; ++tick) {
-    const Time when = options_.talk->tick(tick);
-    co_await context().sleep_until(when);
+  for (std::uint64_t tick = options_.talk->next_tick(context().now());; ++tick) {
+    co_await context().sleep_until(options_.talk->tick(tick));
     if (!context().up()) continue;
     say(tick, context().id(), context().now(), position_of(filter()));
     for (Companion& other : companions_) {

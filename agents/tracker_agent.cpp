@@ -20,21 +20,22 @@ void TrackerAgent::start() {
 }
 
 Process TrackerAgent::look() {
-  Time next = options_.sensor_start;
-  for (std::uint64_t count = 0; next <= options_.sensor_end; ++count) {
+  const Time start = options_.sensor_start;
+  const Duration period = options_.sensor_period;
+  for (std::uint64_t count = instants_before(context().now(), start, period);; ++count) {
+    const Time next = start + period * static_cast<std::int64_t>(count);
+    if (next > options_.sensor_end) co_return;
     co_await context().sleep_until(next, Phase::measure);
     if (context().up()) {
       options_.scanner->scan(count, plots_);
       tracker_.scan(context().now().nanoseconds(), plots_.plots, plots_.coverage);
     }
-    next = next + options_.sensor_period;
   }
 }
 
 Process TrackerAgent::talk() {
-  for (std::uint64_t tick = 0;; ++tick) {
-    const Time when = options_.talk->tick(tick);
-    co_await context().sleep_until(when);
+  for (std::uint64_t tick = options_.talk->next_tick(context().now());; ++tick) {
+    co_await context().sleep_until(options_.talk->tick(tick));
     if (context().up()) say(tick);
   }
 }

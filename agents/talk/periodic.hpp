@@ -9,6 +9,15 @@
 
 namespace hearsay {
 
+/// How many of the instants start, start + period, … lie before `now`: what the next one is
+/// numbered. period > 0.
+inline std::uint64_t instants_before(Time now, Time start, Duration period) {
+  const Duration since = now - start;
+  if (since <= Duration()) return 0;
+  return static_cast<std::uint64_t>((since.nanoseconds() + period.nanoseconds() - 1) /
+                                    period.nanoseconds());
+}
+
 /// How the phases of a fleet's agents relate.
 enum class TalkPhase {
   random,     ///< uniform on [0, period), a stream of its own
@@ -26,9 +35,7 @@ struct PeriodicTalk {
   }
   /// The first tick that is not before `now`.
   std::uint64_t next_tick(Time now) const {
-    const std::int64_t since = now.nanoseconds() - phase.nanoseconds();
-    if (since <= 0) return 0;
-    return static_cast<std::uint64_t>((since + period.nanoseconds() - 1) / period.nanoseconds());
+    return instants_before(now, Time::at(phase), period);
   }
 };
 

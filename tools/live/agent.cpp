@@ -134,8 +134,8 @@ std::string run_agent(const std::shared_ptr<const PreparedScenario>& prepared,
     return in_lockstep(prepared, catalog, options, *welcome, superior, reactor,
                        memory ? &*memory : nullptr);
   }
-  OwnTime own_time(prepared, options, *welcome, port, reactor, {orders, answers},
-                   memory ? &*memory : nullptr);
+  OrderLine line(orders, answers, reactor, options.id);
+  OwnTime own_time(prepared, options, *welcome, port, reactor, line, memory ? &*memory : nullptr);
   return own_time.serve(catalog, status);
 }
 

@@ -15,8 +15,6 @@ using remote::Order;
 using remote::OrderKind;
 
 constexpr auto patience = 100ms;  ///< the longest it sleeps
-/// Orders that wait while it waits for an answer.
-constexpr std::size_t orders_max = 10'000;
 /// Rows that a report takes; more wait for the next.
 constexpr std::size_t report_rows_max = 1000;
 
@@ -36,13 +34,13 @@ std::string air_in_partition(const AgentOptions& options) {
 }  // namespace
 
 OwnTime::OwnTime(std::shared_ptr<const PreparedScenario> prepared, const AgentOptions& options,
-                 const live::Welcome& welcome, live::Port& port, Reactor& reactor,
-                 const Frames& frames, remote::MemoryStore* memory)
+                 const live::Welcome& welcome, live::Port& port, Reactor& reactor, OrderLine& line,
+                 remote::MemoryStore* memory)
     : prepared_(std::move(prepared)),
       options_(options),
       welcome_(welcome),
       reactor_(reactor),
-      frames_(frames),
+      line_(line),
       memory_(memory),
       tongue_(tongue_of(*prepared_, options.id)),
       air_out_(port, air_out_partition(options)),
@@ -69,17 +67,16 @@ std::string OwnTime::serve(const Catalog& catalog,
       }
     }
     if (solo_) catch_up();
-    if (!world_gone_ && !take_orders(catalog)) return {};
-    if (world_gone_) return reactor_.stopped() ? std::string() : gone;
+    if (!take_orders(catalog) || reactor_.stopped()) return {};
     if (solo_) {
       take_measurements();
       take_packets();
-      if (life_over_ || world_gone_) continue;
-      if (solo_->simulation().failed()) return failure();
+      if (line_.life_over()) continue;
+      if (solo_->simulation().failed()) return line_.gone() ? gone : failure();
       if (memory_) memory_->save(solo_->agent());
     }
-    if (!answer_.notes.empty()) answer(remote::AnswerKind::done);
-    if (presence_.gone(frames_.orders.writers_alive() > 0)) return gone;
+    line_.tell();
+    if (line_.gone()) return gone;
     if (WallClock::now() >= next_status) {
       next_status = WallClock::now() + 500ms;
       status(status_text());
@@ -112,22 +109,9 @@ void OwnTime::look_around(const Order& order) {
   around_ = order.surroundings;
 }
 
-bool OwnTime::take_order(Order& order) {
-  while (frames_.orders.take(bytes_)) {
-    if (live::decode(bytes_, frame_) && remote::unpack(frame_.content, order)) return true;
-  }
-  return false;
-}
-
 bool OwnTime::take_orders(const Catalog& catalog) {
   Order order;
-  while (!world_gone_) {
-    if (!waiting_.empty()) {
-      order = std::move(waiting_.front());
-      waiting_.pop_front();
-    } else if (!take_order(order)) {
-      break;
-    }
+  while (line_.take(order)) {
     if (!obey(catalog, order)) return false;
   }
   return true;
@@ -141,7 +125,6 @@ void OwnTime::begin(const Catalog& catalog, const Order& order) {
   const Solo::Options own{
       .id = options_.id, .seed = welcome_.seed, .now = now(), .tap = tap, .plans = nullptr};
   leg_.reset();
-  life_over_ = false;
   try {
     remote::DistantWorld& world = *this;
     solo_ = std::make_unique<Solo>(prepared_, catalog, world, own);
@@ -273,43 +256,10 @@ void OwnTime::steer(AgentId, const Leg& leg) {
   asking_.note();
 }
 
-void OwnTime::note(std::span<const std::byte> note) { Packer(answer_.notes).bytes(note); }
-
-void OwnTime::answer(remote::AnswerKind kind) {
-  answer_.kind = kind;
-  frame_.agent = report_.agent;
-  remote::pack(answer_, frame_.content);
-  answer_ = {};
-  live::encode(frame_, bytes_);
-  while (!frames_.answers.write(bytes_)) {
-    world_gone_ = reactor_.stopped() || presence_.gone(frames_.orders.writers_alive() > 0);
-    if (world_gone_) return;
-    reactor_.wait(WallClock::now());
-  }
-}
-
 std::span<const std::byte> OwnTime::ask(std::span<const std::byte> question) {
-  answer_.content.assign(question.begin(), question.end());
-  answer_.number = ++asked_;
-  answer(remote::AnswerKind::ask);
-  while (!world_gone_ && !life_over_) {
-    Order order;
-    while (take_order(order)) {
-      if (order.kind == OrderKind::go_on && order.number == asked_) {
-        look_around(order);
-        answered_ = std::move(order);
-        return answered_.content;
-      }
-      // After these nobody answers any more.
-      life_over_ = order.kind == OrderKind::start || order.kind == OrderKind::dismiss;
-      waiting_.push_back(std::move(order));
-      if (life_over_) throw remote::WorldGone();
-    }
-    world_gone_ = reactor_.stopped() || waiting_.size() > orders_max ||
-                  presence_.gone(frames_.orders.writers_alive() > 0);
-    if (!world_gone_) reactor_.wait(WallClock::now() + patience);
-  }
-  throw remote::WorldGone();
+  const Order& answer = line_.ask(question);
+  look_around(answer);
+  return answer.content;
 }
 
 // Nobody here knows the truth.
@@ -325,9 +275,9 @@ std::int64_t OwnTime::stamp_now() {
 void OwnTime::report(bool last) {
   at_once([&] {
     if (solo_->reporter()) {
-      Packer out(answer_.content);
+      Packer out(line_.report());
       solo_->reporter()->report(out);
-      answer(remote::AnswerKind::done);
+      line_.tell();
     }
     if (!believer_) return;
     believer_->advance(stamp_now());

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
@@ -17,22 +16,16 @@
 #include "scenarios/solo.hpp"
 #include "tools/live/air.hpp"
 #include "tools/live/options.hpp"
-#include "tools/live/presence.hpp"
+#include "tools/live/order_line.hpp"
 #include "tools/live/reactor.hpp"
 
 namespace hearsay::fleet {
-
-/// The way to the world for orders, and for what is asked and told.
-struct Frames {
-  live::Reader& orders;
-  live::Writer& answers;
-};
 
 class OwnTime final : private remote::DistantWorld, private RecordTap {
  public:
   /// All outlive this.
   OwnTime(std::shared_ptr<const PreparedScenario> prepared, const AgentOptions& options,
-          const live::Welcome& welcome, live::Port& port, Reactor& reactor, const Frames& frames,
+          const live::Welcome& welcome, live::Port& port, Reactor& reactor, OrderLine& line,
           remote::MemoryStore* memory);
   ~OwnTime() override;
 
@@ -49,7 +42,7 @@ class OwnTime final : private remote::DistantWorld, private RecordTap {
   Point position(AgentId) const override;
   void steer(AgentId, const Leg& leg) override;
   std::span<const std::byte> ask(std::span<const std::byte> question) override;
-  void note(std::span<const std::byte> note) override;
+  void note(std::span<const std::byte> note) override { line_.note(note); }
   void watch(AgentId, Believer& believer) override { believer_ = &believer; }
   double distance_error_m(int subject, const gaussian::Belief& belief) override;
   LedgerPool* ledgers() override { return nullptr; }
@@ -65,9 +58,6 @@ class OwnTime final : private remote::DistantWorld, private RecordTap {
   /// @return false once it is dismissed.
   bool obey(const Catalog& catalog, const remote::Order& order);
   bool take_orders(const Catalog& catalog);
-  bool take_order(remote::Order& order);
-  /// Tells the world what there is to tell: notes, and a question or a state.
-  void answer(remote::AnswerKind kind);
   void take_measurements();
   void take_packets();
   void hear(const Parcel& parcel);
@@ -83,9 +73,8 @@ class OwnTime final : private remote::DistantWorld, private RecordTap {
   const AgentOptions& options_;
   live::Welcome welcome_;
   Reactor& reactor_;
-  Frames frames_;
-  remote::MemoryStore* memory_;       // null: it has none
-  Presence presence_{world_grace_s};  // of the world
+  OrderLine& line_;
+  remote::MemoryStore* memory_;  // null: it has none
   Tongue tongue_;
   AirOut air_out_;
   AirIn air_in_;
@@ -97,13 +86,6 @@ class OwnTime final : private remote::DistantWorld, private RecordTap {
   remote::Surroundings around_;
   std::optional<Leg> leg_;  // of one that is steered: where it was last told to go
   remote::Asking asking_{*this};
-  remote::Answer answer_;
-  std::deque<remote::Order> waiting_;  // orders that came while it waited for an answer
-  remote::Order answered_;             // … and the answer
-  std::uint64_t asked_ = 0;
-  live::Frame frame_;
-  bool world_gone_ = false;
-  bool life_over_ = false;  // nobody answers any more; the order that says why waits
   std::vector<AgentId> neighbours_;
   EstimatorWorkspace workspace_;
   live::Report report_;

@@ -124,6 +124,33 @@ class LiveBed(Bed):
         first = self.start("world", *words, *world, "--status")
         return first, [self.start("agent", *words, "--id", i) for i in range(agents)]
 
+    def came(self, kind):
+        """Events of that kind, in live.db."""
+        return self.rows("live.db", "SELECT t_s, agent FROM event WHERE kind = ? ORDER BY t_s", kind)
+
+    def joined_again(self, words, pace, memory=()):
+        """Agent 1 of four is killed in the midst of a run, and another process takes its place.
+        @return when that joined."""
+        world = self.start("world", *words, *pace, "--status")
+        agents = [self.start("agent", *words, "--id", i, *(memory if i == 1 else ())) for i in range(4)]
+        self.until(lambda: world.now_s() > 0, "the run begins")
+        agents[1].kill()
+        self.ends(agents[1], -signal.SIGKILL)
+        agents[1] = self.start("agent", *words, "--id", 1, *memory)
+        # A world may not have seen yet that the one before is gone.
+        tries = 1
+        while agents[1].wait() != 0 and tries < 20:
+            self.assertIn("agent 1 is there already", agents[1].trouble())
+            agents[1] = self.start("agent", *words, "--id", 1, *memory)
+            tries += 1
+        self.ends(world)
+        for agent in agents:
+            self.ends(agent)
+        ((silent_s, silent),), ((joined_s, joined),) = self.came("silent"), self.came("joined again")
+        self.assertEqual((silent, joined), (1, 1))
+        self.assertLessEqual(silent_s, joined_s)
+        return joined_s
+
     def until(self, done, what, seconds=WAIT_S):
         limit = time.monotonic() + seconds
         while not done():

@@ -20,9 +20,6 @@ class AnAgentIsKilled(LiveBed):
         pace = ["--lockstep"] if mode == "--lockstep" else ["--speed", 20]
         return [*pace, "--out", "live.db"]
 
-    def came(self, kind):
-        return self.rows("live.db", "SELECT t_s, agent FROM event WHERE kind = ? ORDER BY t_s", kind)
-
     def delivered(self, sender, since_s):
         """@return who got packets that were sent after this."""
         return {receiver for (receiver,) in self.rows(
@@ -47,26 +44,7 @@ class AnAgentIsKilled(LiveBed):
         self.assertEqual(self.delivered(3, silent_s), {0, 2})
 
     def expect_to_join_again(self, mode, radio=(), memory=()):
-        words = [*self.words(mode), *radio]
-        world = self.start("world", *words, *self.world(mode), "--status")
-        agents = [self.start("agent", *words, "--id", i, *(memory if i == 1 else ())) for i in range(4)]
-        self.until(lambda: world.now_s() > 0, "the run begins")
-        agents[1].kill()
-        self.ends(agents[1], -signal.SIGKILL)
-        agents[1] = self.start("agent", *words, "--id", 1, *memory)
-        # A world may not have seen yet that the one before is gone.
-        tries = 1
-        while agents[1].wait() != 0 and tries < 20:
-            self.assertIn("agent 1 is there already", agents[1].trouble())
-            agents[1] = self.start("agent", *words, "--id", 1, *memory)
-            tries += 1
-        self.ends(world)
-        for agent in agents:
-            self.ends(agent)
-        ((silent_s, silent),), ((joined_s, joined),) = self.came("silent"), self.came("joined again")
-        self.assertEqual((silent, joined), (1, 1))
-        self.assertLessEqual(silent_s, joined_s)
-        return joined_s
+        return self.joined_again([*self.words(mode), *radio], self.world(mode), memory)
 
     def expect_to_be_heard(self, joined_s):
         """What it says counts again: delivered, and not taken for what it said in its life before."""

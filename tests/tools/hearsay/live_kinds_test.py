@@ -68,5 +68,27 @@ class RealTime(LiveBed):
             self.assertGreater(self.value("live.db", explorer, "fusions"), 3)
 
 
+class AnotherProcessTakesTheirPlace(LiveBed):
+    def expect_robots_to(self, mode, duration_s, *speed):
+        words = [CORRIDOR, "--set", f"duration_s={duration_s}", "--set", 'record.series=["robot_x_m"]',
+                 "--set", "record.series_period_s=5", "--set", "record.messages=all"]
+        joined_s = self.joined_again(words, [mode, *speed, "--out", "live.db"])
+        places = self.rows("live.db", "SELECT t_s, value FROM series WHERE agent = 1 AND name = 'robot_x_m' ORDER BY t_s")
+        after = [place for time, place in places if time > joined_s]
+        self.assertGreater(max(after) - min(after), 1.0)
+        heard = self.rows("live.db", "SELECT count(*) FROM message WHERE receiver = 1 AND sent_s > ? AND fate = 'delivered'",
+                          joined_s)
+        self.assertGreater(heard[0][0], 10)
+        # No step of its control is made up for.
+        longest = max(abs(b[1] - a[1]) / (b[0] - a[0]) for a, b in zip(places, places[1:]))
+        self.assertLess(longest, 0.3)
+
+    def test_robots_drive_on_in_lockstep(self):
+        self.expect_robots_to("--lockstep", 500)
+
+    def test_robots_drive_on_in_real_time(self):
+        self.expect_robots_to("--speed", 300, 20)
+
+
 if __name__ == "__main__":
     unittest.main()

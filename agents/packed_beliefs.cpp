@@ -69,4 +69,31 @@ void take(Unpacker& in, TrackedBelief& tracked) {
   take(in, tracked.ledger);
 }
 
+// Numbers that have met no look are left out.
+void put(Packer& out, const grid::LookLedger& ledger) {
+  const grid::Shape& shape = ledger.shape();
+  const std::size_t numbers = static_cast<std::size_t>(shape.cells) * shape.layers;
+  out.count(numbers);
+  for (std::size_t number = 0; number < numbers; ++number) {
+    const std::span<const float> weights = ledger.weights(number);
+    if (weights.empty()) continue;
+    out.count(number);
+    out.count(weights.size());
+    for (const float weight : weights) out.f32(weight);
+  }
+  out.count(numbers);
+}
+
+void take(Unpacker& in, const grid::Shape& shape, grid::LookLedger& ledger) {
+  const std::size_t numbers = static_cast<std::size_t>(shape.cells) * shape.layers;
+  ledger = grid::LookLedger(shape);
+  if (in.u32() != numbers) in.fail();
+  std::vector<float> weights;
+  for (std::size_t number = in.u32(); number < numbers && in.good(); number = in.u32()) {
+    weights.resize(in.count(4));
+    for (float& weight : weights) weight = in.f32();
+    ledger.assign(number, weights);
+  }
+}
+
 }  // namespace hearsay

@@ -5,6 +5,7 @@
 
 #include "agents/estimator.hpp"
 #include "agents/packing.hpp"
+#include "filters/grid/ledger.hpp"
 
 namespace hearsay {
 
@@ -13,6 +14,9 @@ void take(Unpacker& in, gaussian::Belief& belief);
 void put(Packer& out, const Ledger& ledger);
 void take(Unpacker& in, Ledger& ledger);
 void put(Packer& out, const TrackedBelief& tracked);
+void put(Packer& out, const grid::LookLedger& ledger);
 void take(Unpacker& in, TrackedBelief& tracked);
+/// Fails for a ledger of a grid of another shape.
+void take(Unpacker& in, const grid::Shape& shape, grid::LookLedger& ledger);
 
 }  // namespace hearsay

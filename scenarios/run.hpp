@@ -18,6 +18,7 @@
 #include "agents/lookout.hpp"
 #include "agents/pose_witness.hpp"
 #include "agents/remote/distant_world.hpp"
+#include "agents/remote/riders.hpp"
 #include "agents/remote/stand_in.hpp"
 #include "agents/robots/floor_body.hpp"
 #include "agents/sensors/target_scan.hpp"
@@ -67,10 +68,6 @@ std::shared_ptr<const PreparedScenario> prepare(Scenario scenario, const Catalog
 /// Whether an agent decides where it goes.
 bool is_steered(const PreparedScenario& prepared, AgentId id);
 
-/// Whether each agent can live in a process of its own: all can, but explorers only where no
-/// ledgers are kept. @throws InputError that says why not.
-void require_can_live_elsewhere(const PreparedScenario& prepared, const Catalog& catalog);
-
 class Run {
  public:
   struct Options {
@@ -78,7 +75,7 @@ class Run {
     DigestSink* digest = nullptr;         ///< not owned
     DigestSink* ledger_digest = nullptr;  ///< not owned
     /// Makes what stands in for agents that live in other processes: all of them. Empty: all live
-    /// here. See require_can_live_elsewhere().
+    /// here.
     std::function<std::unique_ptr<remote::StandIn>(Context&, const remote::Belongings&)> elsewhere =
         {};
   };
@@ -106,10 +103,12 @@ class Run {
  private:
   /// What an agent has in the world beside its radio.
   struct Equipment {
-    std::unique_ptr<PlotSource> scan;    // of trackers
-    std::unique_ptr<LookSource> looks;   // of explorers
-    std::unique_ptr<RobotBody> body;     // of foragers
-    std::unique_ptr<remote::Desk> desk;  // of agents elsewhere that need it
+    std::unique_ptr<PlotSource> scan;   // of trackers
+    std::unique_ptr<LookSource> looks;  // of explorers
+    std::unique_ptr<RobotBody> body;    // of foragers
+    // Of agents elsewhere that need them.
+    std::unique_ptr<remote::Desk> desk;
+    std::unique_ptr<remote::RiderCodec> riders;
   };
   void build_radio(std::uint64_t seed);
   void build_agents(const Catalog& catalog);

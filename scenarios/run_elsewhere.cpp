@@ -10,15 +10,6 @@
 
 namespace hearsay {
 
-void require_can_live_elsewhere(const PreparedScenario& prepared, const Catalog&) {
-  const bool explores = has_explorers(prepared.scenario);
-  if (!explores || prepared.scenario.record.ledger != "on") return;
-  throw InputError(
-      prepared.scenario.file, 0,
-      "record.ledger: explorers that live in processes of their own keep no ledgers of "
-      "their grids; set it to \"off\"");
-}
-
 std::unique_ptr<Agent> Run::make_stand_in(AgentId id) {
   const std::string& kind = prepared_->specs[static_cast<std::size_t>(id)]->kind;
   if (kind == "estimator") return make_estimator_elsewhere(id);
@@ -31,7 +22,9 @@ std::unique_ptr<Agent> Run::make_stand_in(AgentId id) {
 
 std::unique_ptr<Agent> Run::make_estimator_elsewhere(AgentId id) {
   Context& context = *contexts_[static_cast<std::size_t>(id)];
-  auto agent = elsewhere_(context, {.witness = witness_.get()});
+  std::unique_ptr<remote::RiderCodec>& riders = equipment_.back().riders;
+  if (witness_->ledgers()) riders = std::make_unique<remote::LedgerRiders>(*witness_->ledgers());
+  auto agent = elsewhere_(context, {.witness = witness_.get(), .riders = riders.get()});
   witness_->watch(id, agent->believer());
   lookouts_.back() = make_lookout(*prepared_, id, context, *witness_, *agent, subjects_);
   return agent;
@@ -39,7 +32,8 @@ std::unique_ptr<Agent> Run::make_estimator_elsewhere(AgentId id) {
 
 std::unique_ptr<Agent> Run::at_desk(AgentId id, std::unique_ptr<remote::Desk> desk) {
   const auto i = static_cast<std::size_t>(id);
-  auto agent = elsewhere_(*contexts_[i], {.desk = desk.get()});
+  auto agent =
+      elsewhere_(*contexts_[i], {.desk = desk.get(), .riders = equipment_[i].riders.get()});
   desk->attach(*agent);
   equipment_[i].desk = std::move(desk);
   return agent;
@@ -63,6 +57,10 @@ std::unique_ptr<Agent> Run::make_explorer_elsewhere(AgentId id) {
       explorer_options(*prepared_, id, simulation_.seed(), equip_with_looks(id));
   auto desk =
       std::make_unique<remote::GridDesk>(options.looks, options.area, options.estimator.belief);
+  if (grid_witness_->riders()) {
+    equipment_.back().riders =
+        std::make_unique<remote::GridRiders>(*grid_witness_->riders(), desk->belief().shape());
+  }
   grid_witness_->watch(id, *desk);
   return at_desk(id, std::move(desk));
 }

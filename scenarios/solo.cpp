@@ -69,6 +69,7 @@ std::unique_ptr<Agent> Solo::make_estimator(remote::DistantWorld& world, const O
   auto estimator = std::make_unique<EstimatorAgent>(
       *context_, world, estimator_options(*prepared_, options.id, options.seed));
   receiver_ = estimator.get();
+  if (world.ledgers()) riders_ = std::make_unique<remote::LedgerRiders>(*world.ledgers());
   return estimator;
 }
 
@@ -94,8 +95,14 @@ std::unique_ptr<Agent> Solo::make_explorer(remote::DistantWorld& world, const Op
   if (grid_sensor_of(spec, prepared_->scenario.world)) {
     looks_ = std::make_unique<remote::RemoteLooks>(world);
   }
+  const bool ledger = prepared_->scenario.record.ledger == "on";
   auto explorer = std::make_unique<ExplorerAgent>(
-      *context_, nullptr, explorer_options(*prepared_, options.id, options.seed, looks_.get()));
+      *context_, ledger ? &grid_riders_ : nullptr,
+      explorer_options(*prepared_, options.id, options.seed, looks_.get()));
+  if (ledger) {
+    riders_ =
+        std::make_unique<remote::GridRiders>(grid_riders_, explorer->estimator().belief().shape());
+  }
   reporter_ = std::make_unique<remote::GridReporter>(explorer->estimator());
   return explorer;
 }

@@ -12,6 +12,7 @@
 #include "agents/pose_mind.hpp"
 #include "agents/remote/distant_world.hpp"
 #include "agents/remote/remote_agent.hpp"
+#include "agents/remote/riders.hpp"
 #include "agents/robots/robot_body.hpp"
 #include "agents/sensors/target_scan.hpp"
 #include "agents/trails/trail_account.hpp"
@@ -31,7 +32,7 @@ class Solo {
     RecordTap* tap = nullptr;        ///< gets what it records; nullptr: nobody. Not owned
     ScheduleWatch* plans = nullptr;  ///< is told what it plans. Not owned
   };
-  /// `world` and what the options refer to outlive this. require_can_live_elsewhere().
+  /// `world` and what the options refer to outlive this.
   /// @throws remote::WorldGone if it has something to ask, and nobody answers.
   Solo(std::shared_ptr<const PreparedScenario> prepared, const Catalog& catalog,
        remote::DistantWorld& world, const Options& options);
@@ -42,6 +43,8 @@ class Solo {
   MeasurementReceiver* receiver() { return receiver_; }
   /// Null if it tells nothing of itself but its beliefs.
   remote::Reporter* reporter() { return reporter_.get(); }
+  /// Null if its packets have no riders.
+  remote::RiderCodec* riders() { return riders_.get(); }
 
  private:
   std::unique_ptr<Agent> make_agent(const Catalog& catalog, remote::DistantWorld& world,
@@ -56,6 +59,8 @@ class Solo {
   Simulation simulation_;
   std::unique_ptr<Context> context_;
   // What it has of its world; each null for who needs none.
+  RiderPool<GridRider> grid_riders_;
+  std::unique_ptr<remote::RiderCodec> riders_;
   std::unique_ptr<PlotSource> plots_;
   std::unique_ptr<SightingAccount> sightings_;
   std::unique_ptr<LookSource> looks_;

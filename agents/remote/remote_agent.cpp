@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "agents/remote/riders.hpp"
 #include "sim/kernel/error.hpp"
 
 namespace hearsay::remote {
@@ -66,6 +67,7 @@ RemoteAgent::RemoteAgent(Context& context, Line& line, const Belongings& world,
       line_(line),
       witness_(world.witness),
       desk_(world.desk),
+      riders_(world.riders),
       options_(options),
       believer_(*this) {
   beliefs_.resize(static_cast<std::size_t>(options.subjects),
@@ -100,7 +102,7 @@ Order RemoteAgent::order_about(OrderKind kind, const Packet& packet) {
   about.receiver = packet.receiver;
   about.sent = packet.sent;
   about.bytes.assign(packet.bytes.begin(), packet.bytes.end());
-  if (packet.rider) pack(static_cast<const LedgerRider&>(*packet.rider), about.rider);
+  if (packet.rider && riders_) riders_->write(*packet.rider, about.rider);
   return about;
 }
 
@@ -243,11 +245,7 @@ bool RemoteAgent::send() {
   packet.tick = answer_.tick;
   packet.subject = answer_.news_of;
   packet.acknowledged = answer_.acknowledged;
-  if (!answer_.rider.empty() && witness_ && witness_->ledgers()) {
-    LedgerRider* rider = nullptr;
-    packet.rider = witness_->ledgers()->make(rider);
-    require(unpack(answer_.rider, *rider), "an agent's ledger is malformed");
-  }
+  if (!answer_.rider.empty() && riders_) packet.rider = riders_->read(answer_.rider);
   return context().send(packet);
 }
 

@@ -96,6 +96,7 @@ class RemoteAgent final : public StandIn {
   Line& line_;
   EstimatorWitness* witness_;
   Desk* desk_;
+  RiderCodec* riders_;
   Options options_;
   Beliefs believer_;
   Answer answer_;

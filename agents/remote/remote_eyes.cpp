@@ -159,11 +159,14 @@ Looks RemoteLooks::look(double heading_rad, std::uint64_t count) {
     look.m = in.f64();
     look.n = in.f64();
   }
-  return {looks_, {}};
+  indices_.resize(in.count(4));
+  for (std::uint32_t& index : indices_) index = in.u32();
+  return {looks_, indices_};
 }
 
 void GridReporter::report(Packer& out) {
   for (const float evidence : mind_.belief().evidence()) out.f32(evidence);
+  put(out, mind_.ledger());
 }
 
 GridDesk::GridDesk(LookSource* looks, const grid::Area& area, const GridBelief::Options& belief)
@@ -180,14 +183,27 @@ void GridDesk::answer(Question question, Unpacker& in, Packer& out) {
     out.f64(look.m);
     out.f64(look.n);
   }
+  out.count(seen.indices.size());
+  for (const std::uint32_t index : seen.indices) out.u32(index);
+}
+
+// Zeros, where nothing came, are the prior.
+Unpacker GridDesk::take_evidence() const {
+  Unpacker in = state();
+  for (float& evidence : evidence_) evidence = in.f32();
+  return in;
 }
 
 const GridBelief& GridDesk::belief() const {
-  Unpacker in = state();
-  for (float& evidence : evidence_) evidence = in.f32();
-  // Zeros, where nothing came, are the prior.
+  take_evidence();
   belief_.assign(evidence_);
   return belief_;
+}
+
+const grid::LookLedger& GridDesk::ledger() const {
+  Unpacker in = take_evidence();
+  take(in, belief_.shape(), ledger_);
+  return ledger_;
 }
 
 }  // namespace hearsay::remote

@@ -87,12 +87,12 @@ class RemoteLooks final : public LookSource {
  public:
   /// `asker` outlives this.
   explicit RemoteLooks(Asker& asker) : asking_(asker) {}
-  /// Without indices: ledgers are off.
   Looks look(double heading_rad, std::uint64_t count) override;
 
  private:
   Asking asking_;
   std::vector<grid::CellLook> looks_;
+  std::vector<std::uint32_t> indices_;
 };
 
 class GridReporter final : public Reporter {
@@ -105,7 +105,6 @@ class GridReporter final : public Reporter {
   const GridMind& mind_;
 };
 
-/// Its grid is told without its ledger.
 class GridDesk final : public Desk, public GridMind {
  public:
   /// `looks`: null for who has no sensor. It outlives this.
@@ -113,13 +112,16 @@ class GridDesk final : public Desk, public GridMind {
   void answer(Question question, Unpacker& in, Packer& out) override;
   /// The prior where nobody knows.
   const GridBelief& belief() const override;
-  const grid::LookLedger& ledger() const override { return ledger_; }
+  const grid::LookLedger& ledger() const override;
 
  private:
+  Unpacker take_evidence() const;
+
   LookSource* looks_;
-  mutable GridBelief belief_;  // as last reported
+  // As last reported.
+  mutable GridBelief belief_;
   mutable std::vector<float> evidence_;
-  grid::LookLedger ledger_;
+  mutable grid::LookLedger ledger_;
 };
 
 }  // namespace hearsay::remote

@@ -22,6 +22,13 @@ RemoteWorld::RemoteWorld(Superior& superior, const Order& first, const Options& 
 
 bool RemoteWorld::serve(const Parts& parts) {
   parts_ = &parts;
+  const bool dismissed = serve_until_dismissed(parts);
+  rider_ = RiderPtr();  // it may be of a pool of the agent's
+  parts_ = nullptr;
+  return dismissed;
+}
+
+bool RemoteWorld::serve_until_dismissed(const Parts& parts) {
   for (bool begun = false;; begun = true) {
     std::exception_ptr error;
     try {
@@ -53,7 +60,7 @@ void RemoteWorld::look_around() {
 }
 
 void RemoteWorld::obey() {
-  const auto& [simulation, agent, receiver, reporter] = *parts_;
+  const auto& [simulation, agent, receiver, reporter, riders] = *parts_;
   if (order_.kind == OrderKind::wake) {
     require(simulation.next_time() == order_.now, "it is not the time of what was planned");
     simulation.happen();
@@ -89,11 +96,7 @@ void RemoteWorld::obey() {
 
 Packet RemoteWorld::packet() {
   rider_ = RiderPtr();
-  if (!order_.rider.empty() && options_.ledgers) {
-    LedgerRider* rider = nullptr;
-    rider_ = pool_.make(rider);
-    require(unpack(order_.rider, *rider), "a ledger is malformed");
-  }
+  if (!order_.rider.empty() && parts_->riders) rider_ = parts_->riders->read(order_.rider);
   return {.sender = order_.sender,
           .receiver = order_.receiver,
           .kind = parts_->simulation.record().name(order_.message_kind),
@@ -138,7 +141,9 @@ bool RemoteWorld::send(AgentId, const Outgoing& packet) {
   answer_.news_of = packet.subject;
   answer_.acknowledged = packet.acknowledged;
   answer_.bytes.assign(packet.bytes.begin(), packet.bytes.end());
-  if (packet.rider.get()) pack(static_cast<const LedgerRider&>(*packet.rider.get()), answer_.rider);
+  if (packet.rider.get() && parts_->riders) {
+    parts_->riders->write(*packet.rider.get(), answer_.rider);
+  }
   call(AnswerKind::send);
   return order_.yes;
 }

@@ -9,6 +9,7 @@
 #include "agents/measurement.hpp"
 #include "agents/remote/distant_world.hpp"
 #include "agents/remote/protocol.hpp"
+#include "agents/remote/riders.hpp"
 
 namespace hearsay::remote {
 
@@ -54,6 +55,7 @@ class RemoteWorld final : public DistantWorld, private RecordTap, private Schedu
     Agent& agent;
     MeasurementReceiver* receiver = nullptr;  ///< null: it has no sensors
     Reporter* reporter = nullptr;             ///< null: it tells of its beliefs alone
+    RiderCodec* riders = nullptr;             ///< of its packets; null: there are none
   };
   /// Obeys until it is dismissed. @return false if the world went away before, or took it for gone
   /// and lets it begin anew.
@@ -85,6 +87,7 @@ class RemoteWorld final : public DistantWorld, private RecordTap, private Schedu
   void scheduled(EventId id, Time time, Phase phase) override;
   void cancelled(EventId id) override;
 
+  bool serve_until_dismissed(const Parts& parts);
   void look_around();
   void obey();
   Packet packet();

@@ -11,11 +11,13 @@
 namespace hearsay::remote {
 
 class Desk;
+class RiderCodec;
 
 /// What an agent elsewhere has in its world, beside its radio.
 struct Belongings {
   EstimatorWitness* witness = nullptr;  ///< null if there is nothing to estimate
   Desk* desk = nullptr;                 ///< null if it asks for nothing
+  RiderCodec* riders = nullptr;         ///< of its packets; null if they have none
 };
 
 class StandIn : public Agent, public MeasurementReceiver {

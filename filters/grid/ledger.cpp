@@ -243,6 +243,13 @@ void LookLedger::copy_range(int first_cell, int count, const LookLedger& from) {
   }
 }
 
+void LookLedger::assign(std::size_t number, std::span<const float> weights) {
+  require(number < numbers(), "LookLedger: no cell of this number");
+  take(number, weights.empty()
+                   ? no_row
+                   : std::make_shared<std::vector<float>>(weights.begin(), weights.end()));
+}
+
 void LookLedger::clear() { std::fill(pages_.begin(), pages_.end(), nullptr); }
 
 LookMultiplicity multiplicity(const LookLedger& ledger, const LookBook& book) {

@@ -83,6 +83,8 @@ class LookLedger {
   /// Takes `count` cells from `first_cell` on from another ledger.
   void copy_range(int first_cell, int count, const LookLedger& from);
   void clear();  ///< back to no look
+  /// Of a number, in place of what they were, by index of the look.
+  void assign(std::size_t number, std::span<const float> weights);
 
   /// Of a number (cell·layers + layer), by index of the look.
   std::span<const float> weights(std::size_t number) const;

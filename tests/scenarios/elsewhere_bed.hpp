@@ -89,7 +89,8 @@ inline void live(const std::shared_ptr<const PreparedScenario>& prepared, AgentI
   Solo solo(
       prepared, catalog, world,
       {.id = id, .seed = seed, .now = first.now, .tap = &world.tap(), .plans = &world.plans()});
-  if (!world.serve({solo.simulation(), solo.agent(), solo.receiver(), solo.reporter()})) {
+  if (!world.serve(
+          {solo.simulation(), solo.agent(), solo.receiver(), solo.reporter(), solo.riders()})) {
     way.hang_up();
   }
 }

@@ -127,7 +127,6 @@ int live_fleet(const LiveVerb& verb, const Catalog& catalog) {
   // Told here, once, and not by each process.
   const Scenario scenario = scenario_of(verb, catalog);
   const auto prepared = prepared_of(scenario, catalog);
-  require_can_live_elsewhere(*prepared, catalog);
   if (!verb.out.empty()) probe_output(verb.out);
   fleet::FleetOptions options = fleet_of(verb);
   if (options.fleet.empty()) options.fleet = fmt::format("hearsay-{}", getpid());

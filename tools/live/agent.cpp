@@ -75,7 +75,8 @@ std::string in_lockstep(const std::shared_ptr<const PreparedScenario>& prepared,
                  .now = first.now,
                  .tap = &world.tap(),
                  .plans = &world.plans()});
-      if (world.serve({solo.simulation(), solo.agent(), solo.receiver(), solo.reporter()})) {
+      if (world.serve(
+              {solo.simulation(), solo.agent(), solo.receiver(), solo.reporter(), solo.riders()})) {
         return {};
       }
     } catch (const remote::WorldGone&) {
@@ -92,7 +93,6 @@ std::string in_lockstep(const std::shared_ptr<const PreparedScenario>& prepared,
 std::string run_agent(const std::shared_ptr<const PreparedScenario>& prepared,
                       const Catalog& catalog, const AgentOptions& options,
                       const std::function<void(const std::string&)>& status) {
-  require_can_live_elsewhere(*prepared, catalog);
   const auto agents = static_cast<AgentId>(prepared->specs.size());
   if (options.id < 0 || options.id >= agents) {
     throw InputError(

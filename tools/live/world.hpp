@@ -24,7 +24,7 @@ struct WorldResult {
 };
 
 /// Waits for the agents, lets the run happen, dismisses them. `status` gets a line now and then, of
-/// how far it is. @throws InputError for a scenario of which agents cannot live elsewhere.
+/// how far it is.
 WorldResult run_world(const std::shared_ptr<const PreparedScenario>& prepared,
                       const Catalog& catalog, const WorldOptions& options,
                       const std::function<void(const std::string&)>& status);

@@ -2,11 +2,12 @@
 // one; and questions that are none do no harm.
 #include <gtest/gtest.h>
 
-#include <functional>
+#include <algorithm>
 
 #include "agents/remote/remote_agent.hpp"
 #include "agents/remote/remote_body.hpp"
 #include "agents/remote/remote_eyes.hpp"
+#include "agents/remote/riders.hpp"
 #include "net/radio.hpp"
 #include "sim/kernel/error.hpp"
 
@@ -203,9 +204,11 @@ TEST_F(Desks, TrackersLocalizersAndExplorersSeeWhatTheyWouldSeeHere) {
     }
     Looks look(double heading_rad, std::uint64_t count) override {
       looks = {{int(count), heading_rad, 1.0, 2.0}, {9, -0.5, 0.0, 3.0}};
-      return {looks, {}};
+      if (count > 0) indices = {7, 4};
+      return {looks, indices};
     }
     std::vector<grid::CellLook> looks;
+    std::vector<std::uint32_t> indices;
   } source;
   TrackDesk track_desk(&source);
   desk_ = &track_desk;
@@ -228,7 +231,9 @@ TEST_F(Desks, TrackersLocalizersAndExplorersSeeWhatTheyWouldSeeHere) {
   GridDesk grid_desk(&source, area, grid::BernoulliGrid::Options());
   desk_ = &grid_desk;
   RemoteLooks remote_looks(*this);
+  EXPECT_TRUE(remote_looks.look(0.5, 0).indices.empty());  // ledgers are off
   const Looks seen = remote_looks.look(0.75, 6);
+  EXPECT_TRUE(std::ranges::equal(seen.indices, source.indices));
   ASSERT_EQ(seen.looks.size(), 2U);
   EXPECT_EQ(seen.looks[0].cell, 6);
   EXPECT_EQ(seen.looks[0].ratio, 0.75);
@@ -258,6 +263,62 @@ TEST_F(Desks, TrackersLocalizersAndExplorersSeeWhatTheyWouldSeeHere) {
   EXPECT_EQ(account.heard, std::vector<double>(2, 201.25));
   EXPECT_THROW(sightings.saw_robot(9, 3, {0.5, 0.25, 0.125, 0.0625}), BrokenInvariant);
   EXPECT_FALSE(pose_desk.own_pose());  // nobody has told
+}
+
+TEST(Riders, LedgersOfGridsComeBackNumberByNumber) {
+  const grid::Shape shape{.cells = 5, .layers = 2};
+  RiderPool<GridRider> here, there;
+  GridRiders from(here, shape), to(there, shape);
+  GridRider* rider = nullptr;
+  const RiderPtr holds = here.make(rider);
+  rider->ledger = grid::LookLedger(shape);
+  rider->ledger.looked(1, 0);
+  rider->ledger.looked(1, 2);
+  const std::vector<float> odd{0.5F, -2.0F};
+  rider->ledger.assign(9, odd);
+  Bytes bytes;
+  from.write(*rider, bytes);
+  const auto weights_of = [&](const RiderPtr& read, std::size_t number) {
+    const auto weights = dynamic_cast<const GridRider&>(*read.get()).ledger.weights(number);
+    return std::vector<float>(weights.begin(), weights.end());
+  };
+  for (int again = 0; again < 2; ++again) {  // the second time in room that was used before
+    const RiderPtr read = to.read(bytes);
+    for (std::size_t number = 0; number < 10; ++number) {
+      EXPECT_EQ(weights_of(read, number), weights_of(holds, number)) << number;
+    }
+    EXPECT_EQ(weights_of(read, 3), (std::vector<float>{1.0F, 0.0F, 1.0F}));
+    EXPECT_EQ(weights_of(read, 9), odd);
+  }
+  GridRiders other(there, {.cells = 4, .layers = 2});
+  EXPECT_THROW(other.read(bytes), BrokenInvariant);
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    EXPECT_THROW(to.read(std::span(bytes).first(size)), BrokenInvariant) << size;
+  }
+  Stream draws(1, Purpose("damage"), Entity{0});
+  for (int round = 0; round < 2000; ++round) {
+    Bytes damaged = bytes;
+    damaged[draws.below(damaged.size())] = static_cast<std::byte>(draws.bits());
+    try {
+      to.read(damaged);
+    } catch (const BrokenInvariant&) {
+    }
+  }
+}
+
+TEST(Riders, OfAnotherKindNothingIsSaid) {
+  LedgerPool ledgers;
+  RiderPool<GridRider> grids;
+  LedgerRider* ledger = nullptr;
+  const RiderPtr holds = ledgers.make(ledger);
+  Bytes bytes(3);
+  GridRiders(grids, {.cells = 5, .layers = 1}).write(*ledger, bytes);
+  EXPECT_TRUE(bytes.empty());
+  GridRider* grid = nullptr;
+  const RiderPtr holds_grid = grids.make(grid);
+  bytes.resize(3);
+  LedgerRiders(ledgers).write(*grid, bytes);
+  EXPECT_TRUE(bytes.empty());
 }
 
 TEST_F(Desks, WhoHasNoDeskCannotAsk) {

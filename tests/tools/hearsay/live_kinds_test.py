@@ -7,7 +7,6 @@ from live_bed import LiveBed
 CORRIDOR = SOURCE / "scenarios/lost/corridor.toml"
 CROSSING = SOURCE / "scenarios/tracking/crossing.toml"
 EXPLORE = SOURCE / "scenarios/merino/ch4-explore.toml"
-NO_LEDGER = ["--set", "record.ledger=off"]
 
 
 class Lockstep(LiveBed):
@@ -21,12 +20,7 @@ class Lockstep(LiveBed):
         self.expect_same(CROSSING, "--set", "duration_s=40")
 
     def test_explorers_have_it(self):
-        self.expect_same(EXPLORE, "--set", "duration_s=40", *NO_LEDGER)
-
-    def test_explorers_with_ledgers_are_refused(self):
-        fleet = self.start("live", EXPLORE)
-        self.ends(fleet, 2)
-        self.assertIn("record.ledger: explorers that live in processes of their own keep no ledgers", fleet.trouble())
+        self.expect_same(EXPLORE, "--set", "duration_s=40")
 
 
 class RealTime(LiveBed):
@@ -59,7 +53,7 @@ class RealTime(LiveBed):
             self.assertGreater(self.value("live.db", tracker, "fusions"), 5)
 
     def test_explorers_look_where_they_fly(self):
-        words = [EXPLORE, "--set", "duration_s=100", *NO_LEDGER]
+        words = [EXPLORE, "--set", "duration_s=100", "--set", "record.ledger=off"]
         self.live(*words, "--speed", 20, "--out", "live.db")
         self.expect_names(*words)
         for explorer in range(4):

@@ -122,9 +122,18 @@ bool RealTimeAgent::take_answers() {
   return any;
 }
 
-// What it does by its own time, it does in the world when the world hears of it.
+// What it does by its own time, it does in the world when the world hears of it. Whoever is on the
+// network can write here: what makes no sense is dropped, and answered by nothing.
 void RealTimeAgent::answer(const remote::Answer& question) {
-  remote::take_notes(question.notes, context(), options_.desk, scratch_);
+  const auto try_to = [this](const auto& what) {
+    try {
+      what();
+    } catch (const BrokenInvariant&) {
+      ++dropped_;
+      scratch_.clear();
+    }
+  };
+  try_to([&] { remote::take_notes(question.notes, context(), options_.desk, scratch_); });
   if (question.kind == remote::AnswerKind::done) {
     if (question.content.empty()) return;
     state_ = question.content;
@@ -132,7 +141,7 @@ void RealTimeAgent::answer(const remote::Answer& question) {
     return;
   }
   if (question.kind != remote::AnswerKind::ask) return;
-  remote::serve(question.content, context(), options_.desk, scratch_);
+  try_to([&] { remote::serve(question.content, context(), options_.desk, scratch_); });
   Order go_on = order(OrderKind::go_on);
   go_on.number = question.number;
   go_on.content = scratch_;

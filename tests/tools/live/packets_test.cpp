@@ -8,6 +8,7 @@
 #include <optional>
 #include <thread>
 
+#include "agents/remote/protocol.hpp"
 #include "filters/gaussian/codec.hpp"
 #include "net/live/messages.hpp"
 #include "tests/net/live/port_bed.hpp"
@@ -282,6 +283,46 @@ TEST(Packets, WithoutTheWorldsRadioTheAgentItselfDropsThem) {
   EXPECT_TRUE(report.beliefs[0].belief.xi.allFinite());
   EXPECT_EQ(gaussian::definiteness(report.beliefs[0].belief), gaussian::Definiteness::positive);
   EXPECT_EQ(fleet.end().trouble, "it was asked to stop");
+  EXPECT_EQ(fleet.trouble(), "");
+}
+
+TEST(Packets, QuestionsThatMakeNoSenseAreDroppedByTheWorld) {
+  Fleet fleet("questions");
+  fleet.take_part(1);
+  const std::string partition = live::agent_partition(fleet.name(), 0);
+  live::Reader orders = fleet.port().reader(live::order_topic(), partition);
+  live::Writer answers = fleet.port().writer(live::answer_topic(), partition);
+  fleet.begin_agent(0);
+  fleet.wait_for_the_run();
+  ASSERT_TRUE(live::wait(fleet.port(), [&] { return answers.matched(); }));
+  Bytes bytes;
+  live::Frame frame;
+  const auto write = [&](const remote::Answer& answer, std::size_t without = 0) {
+    remote::pack(answer, frame.content);
+    frame.content.resize(frame.content.size() - without);
+    live::encode(frame, bytes);
+    ASSERT_TRUE(answers.write(bytes));
+  };
+  using remote::AnswerKind;
+  write({.kind = AnswerKind::ask}, 1);                                    // malformed
+  write({.kind = AnswerKind::done, .notes = Bytes(7, std::byte{0xff})});  // no notes
+  write({.kind = AnswerKind::ask, .content = Bytes(1, std::byte{200})});  // nothing that is known
+  write({.kind = AnswerKind::ask, .content = Bytes(65, std::byte{0})});   // it is not steered
+  write({.kind = AnswerKind::ask, .number = 77, .content = Bytes(1, std::byte{1})});  // no body
+  // Whoever asked is answered all the same.
+  ASSERT_TRUE(live::wait(fleet.port(), [&] {
+    remote::Order order;
+    while (orders.take(bytes)) {
+      if (!live::decode(bytes, frame) || !remote::unpack(frame.content, order)) continue;
+      if (order.kind == remote::OrderKind::go_on && order.number == 77) return true;
+    }
+    return false;
+  }));
+  const WorldResult& result = fleet.end();
+  EXPECT_EQ(result.trouble, "it was asked to stop");
+  ASSERT_TRUE(result.run);
+  EXPECT_TRUE(result.end.ok()) << result.end.message;
+  EXPECT_EQ(result.dropped, 5u);
   EXPECT_EQ(fleet.trouble(), "");
 }
 

@@ -43,7 +43,10 @@ class ForagerChecker {
         check_other(agent, path);
       }
     }
-    if (foragers_) check_packets();
+    if (foragers_) {
+      check_packets();
+      check_transforms();
+    }
   }
   /// The plan has been read.
   void places() {
@@ -67,6 +70,7 @@ class ForagerChecker {
   void check_talk(const AgentSpec& agent, const KeyPath& path) const;
   void check_like_first(const AgentSpec& agent, const KeyPath& path, std::size_t number);
   void check_packets() const;
+  void check_transforms() const;
   void check_barriers() const;
   void check_sources() const;
   void check_moves(const SourceSpec& source, const KeyPath& path) const;
@@ -261,6 +265,19 @@ void ForagerChecker::check_packets() const {
       refuse(key, "a crumb and the places of " + std::to_string(events_.size()) + " events take " +
                       std::to_string(least) + " bytes");
     }
+  }
+}
+
+// Two robots never have more places in common than there are events.
+void ForagerChecker::check_transforms() const {
+  if (events_.size() > 1) return;
+  for (std::size_t i = 0; i < s_.agents.size(); ++i) {
+    const AgentSpec& agent = s_.agents[i];
+    if (!is_forager(agent) || agent.talk.policy == "never") continue;
+    if (agent.trails->navigation != "trails" || agent.trails->transform != "pessimistic") continue;
+    fail(agents_[i]["trails"]["transform"],
+         "\"pessimistic\" needs two events: with one place in common it drops all that it hears; "
+         "allowed here: \"optimistic\", \"as-is\"");
   }
 }
 

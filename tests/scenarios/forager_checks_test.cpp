@@ -323,12 +323,32 @@ TEST_F(ForagerChecks, WhoIsCarriedBackLaysWhatItHasCompleted) {
   for (const char* events : {"[\"B\"]", "[\"A\", \"B\"]"}) {
     EXPECT_EQ(carried(events, ""), refused + ", by parameters \"lost-2002\"");
     EXPECT_EQ(carried(events, "parameters = \"thesis-2019-code\", laying = \"at-once\""), refused);
-    EXPECT_EQ(carried(events, "laying = \"completed\""), "no error");
-    EXPECT_EQ(carried(events, "parameters = \"thesis-2019-text\""), "no error");
+    const std::string as_is = ", transform = \"as-is\"";
+    EXPECT_EQ(carried(events, "laying = \"completed\"" + as_is), "no error");
+    EXPECT_EQ(carried(events, "parameters = \"thesis-2019-text\"" + as_is), "no error");
     // These lay nothing anyway.
     EXPECT_EQ(carried(events, "navigation = \"map\""), "no error");
     EXPECT_EQ(carried(events, "navigation = \"explore\""), "no error");
   }
+}
+
+TEST_F(ForagerChecks, WithOneEventNobodyHasTwoPlacesInCommon) {
+  const auto one = [](const std::string& trails, const std::string& policy) {
+    return error(with(with(with(scenario, "[\"A\", \"B\"]", "[\"B\"], respawn = true"),
+                           "parameters = \"lost-2002\"", "laying = \"completed\"" + trails),
+                      "policy = \"at-once\"", "policy = \"" + policy + '"'));
+  };
+  const std::string why =
+      "\"pessimistic\" needs two events: with one place in common it drops all that it hears; "
+      "allowed here: \"optimistic\", \"as-is\"";
+  EXPECT_EQ(one(", transform = \"pessimistic\"", "at-event"),
+            "s.toml:12: agents[0].trails.transform: " + why);
+  EXPECT_EQ(one("", "periodic"), "s.toml:12: agents[0].trails.transform: " + why);
+  for (const char* other :
+       {", transform = \"optimistic\"", ", transform = \"as-is\"", ", navigation = \"map\""}) {
+    EXPECT_EQ(one(other, "at-event"), "no error") << other;
+  }
+  EXPECT_EQ(one("", "never"), "no error");
 }
 
 TEST_F(ForagerChecks, TalkIsOfCrumbs) {

@@ -130,7 +130,7 @@ TEST_F(ForagerLife, ARebootEmptiesTheMemoryUnlessItRemembers) {
 
 TEST_F(ForagerLife, RespawnPutsEachBackToItsStart) {
   const std::string respawned = with(with(team, "[\"A\", \"B\"]", "[\"B\"], respawn = true"),
-                                     "trails = {", "trails = { laying = \"completed\", ");
+                                     "trails = {", "trails = { navigation = \"explore\", ");
   const Values values = run(with(respawned, "at-once", "at-event"));
   for (AgentId id = 0; id < 3; ++id) {
     const auto points = way(values, id);
@@ -158,7 +158,8 @@ TEST_F(ForagerLife, WhatWasDrivenForATrailThatGrewTooLongIsPartOfNoTrip) {
   series_.push_back("trip_length_m");
   const std::string respawned =
       with(with(team, "[\"A\", \"B\"]", "[\"B\"], respawn = true"), "trails = {",
-           "trails = { laying = \"completed\", interval_s = 2, trail_crumbs_max = 30, ");
+           "trails = { transform = \"as-is\", laying = \"completed\", interval_s = 2, "
+           "trail_crumbs_max = 30, ");
   const Values values = run(with(respawned, "at-once", "at-event"));
   double abandoned = 0.0, trips = 0.0;
   for (AgentId id = 0; id < 3; ++id) {

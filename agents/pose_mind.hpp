@@ -1,5 +1,5 @@
 // What a localizer knows, and who hears of what it sees: the witness of its run, in this process
-// (agents/pose_witness) or in another (agents/remote/remote_poses).
+// (agents/pose_witness) or in another (agents/remote/remote_eyes).
 #pragma once
 
 #include <Eigen/Core>

@@ -26,8 +26,8 @@ class PoseWitness final : public SightingAccount {
   /// `simulation` must outlive the witness.
   PoseWitness(Simulation& simulation, Options options);
 
-  /// From now on the pose that `mind` believes in is sampled. Agents in ascending number. `mind`
-  /// outlives the witness.
+  /// From now on the pose that `mind` believes in is sampled. Agents in ascending number. `mind` is
+  /// there until finish() is over.
   void watch(AgentId agent, PoseMind& mind);
 
   void saw_place(AgentId agent, const Eigen::Vector2d& place_m,

@@ -27,7 +27,7 @@ class TrackWitness {
   TrackWitness(Simulation& simulation, const Options& options);
 
   /// From now on `agent`'s confirmed tracks are compared. Agents in ascending number.
-  /// `mind` outlives the witness.
+  /// `mind` is there until finish() is over.
   void watch(AgentId agent, const TrackMind& mind);
 
   /// Schedules the samples up to the end of the run. Once, before it starts.

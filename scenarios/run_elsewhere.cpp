@@ -40,7 +40,9 @@ std::unique_ptr<Agent> Run::at_desk(AgentId id, std::unique_ptr<remote::Desk> de
 }
 
 std::unique_ptr<Agent> Run::make_tracker_elsewhere(AgentId id) {
-  auto desk = std::make_unique<remote::TrackDesk>(equip_with_scan(id));
+  const auto tracks_max =
+      static_cast<std::size_t>(prepared_->specs[static_cast<std::size_t>(id)]->tracker.tracks_max);
+  auto desk = std::make_unique<remote::TrackDesk>(equip_with_scan(id), tracks_max);
   track_witness_->watch(id, *desk);
   return at_desk(id, std::move(desk));
 }

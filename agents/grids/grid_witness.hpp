@@ -43,7 +43,7 @@ class GridWitness {
   /// none if ledgers are off.
   std::span<const std::uint32_t> looked(AgentId agent, std::span<const grid::CellLook> looks);
   /// From now on `agent`'s grid is compared. Agents in ascending number.
-  /// `mind` outlives the witness.
+  /// `mind` is there until finish() is over.
   void watch(AgentId agent, const GridMind& mind);
 
   /// Schedules the samples up to the end of the run. Once, before it starts.

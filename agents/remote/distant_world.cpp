@@ -1,11 +1,16 @@
 #include "agents/remote/distant_world.hpp"
 
 #include "agents/remote/stand_in.hpp"
+#include "sim/kernel/error.hpp"
 
 namespace hearsay::remote {
 
 Unpacker Desk::state() const {
   return Unpacker(agent_ ? agent_->state() : std::span<const std::byte>());
+}
+
+void require_whole(const Unpacker& in) {
+  require(in.done(), "what an agent and its world tell each other is malformed");
 }
 
 void put(Packer& out, const Leg& leg) {

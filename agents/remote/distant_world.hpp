@@ -94,9 +94,13 @@ class Desk {
   virtual ~Desk() = default;
   /// From now on it is `agent` that reports; before, nothing is known. It outlives this.
   void attach(StandIn& agent) { agent_ = &agent; }
-  /// Reads what follows the kind of a question, and writes the answer; nothing for a note.
-  /// @throws BrokenInvariant for a question that is none of its.
+  /// Reads what follows the kind of a question, all of it before it acts, and writes the answer;
+  /// nothing for a note. @throws BrokenInvariant, and nothing has happened, for a question that is
+  /// malformed or none of its.
   virtual void answer(Question question, Unpacker& in, Packer& out) = 0;
+  /// Whether a report is one that such an agent can make. (In real time whoever is on the network
+  /// may write one.)
+  virtual bool is_sound(std::span<const std::byte> report) const = 0;
 
  protected:
   /// What was reported; empty if nobody knows. Valid until anything else happens.
@@ -105,6 +109,9 @@ class Desk {
  private:
   StandIn* agent_ = nullptr;
 };
+
+/// @throws BrokenInvariant unless all was there, and nothing is left.
+void require_whole(const Unpacker& in);
 
 void put(Packer& out, const Leg& leg);
 Leg take_leg(Unpacker& in);

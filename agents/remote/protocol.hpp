@@ -1,4 +1,5 @@
-// What a world and an agent in another process tell each other, in lockstep.
+// What a world and an agent in another process tell each other: all of it in lockstep; in real time
+// orders, and what the agent asks and tells of its world.
 //
 // The world gives an order: begin, what you planned for now is due, this was measured, this packet
 // came. The agent acts on it and answers, first with calls, each of which the world answers by an
@@ -61,7 +62,7 @@ struct Order {
   AgentId sender = no_agent, receiver = no_agent;
   Time sent = {};
   std::vector<std::byte> bytes = {};
-  std::vector<std::byte> rider = {};  ///< pack(LedgerRider); empty: none
+  std::vector<std::byte> rider = {};  ///< as its RiderCodec wrote it; empty: none
   /// outcome: it was acknowledged. up: it forgets. go_on: the packet was taken.
   bool yes = false;
   std::uint32_t lives = 0;              ///< start: how often it began before, in this run

@@ -13,6 +13,8 @@ namespace {
 
 /// Calls before an answer is done; more, and the agent is taken for mad.
 constexpr int calls_max = 1'000'000;
+/// Of who keeps its own time; faster things would be filed without end.
+constexpr double steer_speed_max_m_per_s = 1e4;
 
 // Who keeps its own time may be a little ahead of where the world has it: it then goes to the same
 // place at the same speed.
@@ -22,6 +24,7 @@ void steer(Context& context, const Leg& leg) {
   const auto& v = leg.velocity_m_per_s;
   const double speed_m_per_s = std::sqrt(v[0] * v[0] + v[1] * v[1]);
   if (speed_m_per_s == 0.0 || leg.end == Time::never()) return context.stay();
+  require(speed_m_per_s <= steer_speed_max_m_per_s, "an agent steers faster than anything moves");
   const Point there = leg.at(leg.end);
   context.go_to({there[0], there[1]}, speed_m_per_s);
 }
@@ -44,12 +47,13 @@ void serve(std::span<const std::byte> question, Context& context, Desk* desk,
   const std::uint8_t kind = in.u8();
   require(kind <= static_cast<std::uint8_t>(question_last), "an agent asks what nobody knows");
   if (static_cast<Question>(kind) == Question::steer) {
-    steer(context, take_leg(in));
+    const Leg leg = take_leg(in);
+    require_whole(in);
+    steer(context, leg);
   } else {
     require(desk != nullptr, "an agent that has no desk asks something");
     desk->answer(static_cast<Question>(kind), in, out);
   }
-  require(in.done(), "a question of an agent is malformed");
 }
 
 void take_notes(std::span<const std::byte> notes, Context& context, Desk* desk,

@@ -1,5 +1,7 @@
 #include "agents/remote/remote_body.hpp"
 
+#include <cmath>
+
 #include "sim/kernel/error.hpp"
 
 namespace hearsay::remote {
@@ -70,19 +72,37 @@ trails::Crumb take_crumb(Unpacker& in) {
   return crumb;
 }
 
+void put(Packer& out, const std::optional<plan::Path>& path) {
+  out.flag(path.has_value());
+  if (!path) return;
+  out.f64(path->length_m);
+  out.count(path->points.size());
+  for (const plan::Point& point : path->points) {
+    out.f64(point.x_m);
+    out.f64(point.y_m);
+  }
+}
+
+bool take_only_flag(Unpacker in) {
+  const bool flag = in.flag();
+  require_whole(in);
+  return flag;
+}
+
 }  // namespace
 
 RemoteBody::RemoteBody(Asker& asker) : asking_(asker) {
   asking_.begin(Question::pose);
   Unpacker in = asking_.ask();
   pose_ = take_pose(in);
+  require_whole(in);
 }
 
 void RemoteBody::scan(std::span<double> distances_m) {
   asking_.begin(Question::scan);
   Unpacker in = asking_.ask();
   for (double& distance_m : distances_m) distance_m = in.f64();
-  require(in.done(), "a scan of another scanner");
+  require_whole(in);
 }
 
 plan::RobotFloor::Step RemoteBody::drive(const drive::Command& wanted, double dt_s) {
@@ -93,27 +113,34 @@ plan::RobotFloor::Step RemoteBody::drive(const drive::Command& wanted, double dt
   plan::RobotFloor::Step step;
   step.done = take_command(in);
   step.blocked = in.flag();
-  pose_ = take_pose(in);
+  const drive::Pose pose = take_pose(in);
+  require_whole(in);
+  pose_ = pose;
   return step;
 }
 
 bool RemoteBody::happens(trails::EventId event) {
   asking_.begin(Question::happens).u32(event);
-  return asking_.ask().flag();
+  return take_only_flag(asking_.ask());
 }
 
 bool RemoteBody::put_back(std::uint64_t count) {
   asking_.begin(Question::put_back).u64(count);
   Unpacker in = asking_.ask();
   const bool done = in.flag();
-  pose_ = take_pose(in);
+  const drive::Pose pose = take_pose(in);
+  require_whole(in);
+  pose_ = pose;
   return done;
 }
 
 std::optional<plan::Path> RemoteBody::way(trails::EventId event) {
   asking_.begin(Question::way).u32(event);
   Unpacker in = asking_.ask();
-  if (!in.flag()) return std::nullopt;
+  if (!in.flag()) {
+    require_whole(in);
+    return std::nullopt;
+  }
   plan::Path path;
   path.length_m = in.f64();
   path.points.resize(in.count(16));
@@ -121,6 +148,7 @@ std::optional<plan::Path> RemoteBody::way(trails::EventId event) {
     point.x_m = in.f64();
     point.y_m = in.f64();
   }
+  require_whole(in);
   return path;
 }
 
@@ -144,7 +172,7 @@ void RemoteAccount::drove(int, double length_m, bool blocked, Doing doing, doubl
 
 bool RemoteAccount::arrived(int, trails::EventId event) {
   asking_.begin(Question::arrived).u32(event);
-  return asking_.ask().flag();
+  return take_only_flag(asking_.ask());
 }
 
 void RemoteAccount::told(int, std::span<const trails::Crumb> crumbs) {
@@ -164,7 +192,7 @@ void RemoteAccount::learned(int, trails::RobotId from, std::span<const trails::I
 
 bool RemoteAccount::all_arrived() {
   asking_.begin(Question::all_arrived);
-  return asking_.ask().flag();
+  return take_only_flag(asking_.ask());
 }
 
 void TrailReporter::report(Packer& out) {
@@ -189,37 +217,41 @@ void RobotDesk::answer(Question question, Unpacker& in, Packer& out) {
 bool RobotDesk::answer_of_body(Question question, Unpacker& in, Packer& out) {
   switch (question) {
     case Question::pose:
+      require_whole(in);
       put(out, body_.pose());
       return true;
     case Question::scan:
+      require_whole(in);
       body_.scan(scan_m_);
       for (const double distance_m : scan_m_) out.f64(distance_m);
       return true;
     case Question::drive: {
       const drive::Command wanted = take_command(in);
-      const plan::RobotFloor::Step step = body_.drive(wanted, in.f64());
+      const double dt_s = in.f64();
+      require_whole(in);
+      const plan::RobotFloor::Step step = body_.drive(wanted, dt_s);
       put(out, step.done);
       out.flag(step.blocked);
       put(out, body_.pose());
       return true;
     }
-    case Question::happens:
-      out.flag(body_.happens(in.u32()));
+    case Question::happens: {
+      const trails::EventId event = in.u32();
+      require_whole(in);
+      out.flag(body_.happens(event));
       return true;
-    case Question::put_back:
-      out.flag(body_.put_back(in.u64()));
+    }
+    case Question::put_back: {
+      const std::uint64_t count = in.u64();
+      require_whole(in);
+      out.flag(body_.put_back(count));
       put(out, body_.pose());
       return true;
+    }
     case Question::way: {
-      const std::optional<plan::Path> path = body_.way(in.u32());
-      out.flag(path.has_value());
-      if (!path) return true;
-      out.f64(path->length_m);
-      out.count(path->points.size());
-      for (const plan::Point& point : path->points) {
-        out.f64(point.x_m);
-        out.f64(point.y_m);
-      }
+      const trails::EventId event = in.u32();
+      require_whole(in);
+      put(out, body_.way(event));
       return true;
     }
     default:
@@ -230,43 +262,63 @@ bool RobotDesk::answer_of_body(Question question, Unpacker& in, Packer& out) {
 bool RobotDesk::take_account(Question question, Unpacker& in, Packer& out) {
   switch (question) {
     case Question::sets_off:
+      require_whole(in);
       account_.sets_off(robot_);
       return true;
     case Question::drove: {
       const double length_m = in.f64();
       const bool blocked = in.flag();
       const std::uint8_t doing = in.u8();
+      const double dt_s = in.f64();
+      require_whole(in);
       require(doing < TrailAccount::doings, "a robot elsewhere does what no robot does");
-      account_.drove(robot_, length_m, blocked, static_cast<TrailAccount::Doing>(doing), in.f64());
+      account_.drove(robot_, length_m, blocked, static_cast<TrailAccount::Doing>(doing), dt_s);
       return true;
     }
-    case Question::arrived:
-      out.flag(account_.arrived(robot_, in.u32()));
+    case Question::arrived: {
+      const trails::EventId event = in.u32();
+      require_whole(in);
+      out.flag(account_.arrived(robot_, event));
       return true;
+    }
     case Question::dropped:
+      require_whole(in);
       account_.dropped(robot_);
       return true;
     case Question::told:
       crumbs_.resize(in.count(crumb_bytes));
       for (trails::Crumb& crumb : crumbs_) crumb = take_crumb(in);
+      require_whole(in);
       account_.told(robot_, crumbs_);
       return true;
     case Question::gave_up:
+      require_whole(in);
       account_.gave_up(robot_);
       return true;
     case Question::learned: {
       const trails::RobotId from = in.u32();
       identities_.resize(in.count(identity_bytes));
       for (trails::Identity& identity : identities_) identity = take_identity(in);
+      require_whole(in);
       account_.learned(robot_, from, identities_);
       return true;
     }
     case Question::all_arrived:
+      require_whole(in);
       out.flag(account_.all_arrived());
       return true;
     default:
       return false;
   }
+}
+
+bool RobotDesk::is_sound(std::span<const std::byte> report) const {
+  Unpacker in(report);
+  const Head head = take_head(in);
+  for (std::size_t left = head.crumbs; left > 0; --left) take_crumb(in);
+  const drive::Pose& pose = head.believed;
+  return in.done() && std::isfinite(pose.x_m) && std::isfinite(pose.y_m) &&
+         std::isfinite(pose.heading_rad);
 }
 
 RobotDesk::Head RobotDesk::take_head(Unpacker& in) const {

@@ -64,6 +64,7 @@ class RobotDesk final : public Desk, public TrailMind {
   /// `rays`: of its scanner. Both outlive this.
   RobotDesk(RobotBody& body, TrailAccount& account, int robot, std::size_t rays);
   void answer(Question question, Unpacker& in, Packer& out) override;
+  bool is_sound(std::span<const std::byte> report) const override;
 
   std::size_t crumbs_known() const override;
   trails::TrailCounts crumbs_counted() const override;

@@ -1,5 +1,8 @@
 #include "agents/remote/remote_eyes.hpp"
 
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -10,7 +13,7 @@ namespace hearsay::remote {
 namespace {
 
 // Bytes of a plot, a report (at least) and a look.
-constexpr std::size_t plot_bytes = 48, report_bytes = 5, look_bytes = 28;
+constexpr std::size_t plot_bytes = 48, report_bytes = 5 + 6 * 8, look_bytes = 28;
 
 void put(Packer& out, const localization::RelativeSighting& seen) {
   for (const double x :
@@ -42,6 +45,23 @@ void take_numbers(Unpacker& in, M& matrix) {
   }
 }
 
+std::vector<tracking::Report> take_reports(Unpacker& in, std::size_t count) {
+  std::vector<tracking::Report> reports(count);
+  for (tracking::Report& report : reports) {
+    report.label = in.u32();
+    take(in, report.belief);
+  }
+  return reports;
+}
+
+/// Nothing unless it is one.
+std::optional<PoseBelief> take_pose_belief(Unpacker in) {
+  PoseBelief own{};
+  for (double* const x : {&own.pose.x_m, &own.pose.y_m, &own.pose.heading_rad}) *x = in.f64();
+  take_numbers(in, own.covariance);
+  return in.done() ? std::optional(own) : std::nullopt;
+}
+
 }  // namespace
 
 void RemotePlots::scan(std::uint64_t count, Plots& out) {
@@ -61,6 +81,7 @@ void RemotePlots::scan(std::uint64_t count, Plots& out) {
     take_numbers(in, plot.z);
     take_numbers(in, plot.S);
   }
+  require_whole(in);
 }
 
 void TrackReporter::report(Packer& out) {
@@ -75,7 +96,9 @@ void TrackReporter::report(Packer& out) {
 
 void TrackDesk::answer(Question question, Unpacker& in, Packer& out) {
   require(question == Question::plots && source_, "a tracker elsewhere asks for what it has not");
-  source_->scan(in.u64(), plots_);
+  const std::uint64_t count = in.u64();
+  require_whole(in);
+  source_->scan(count, plots_);
   const bool placed = plots_.coverage.centre.size() == 2;
   out.flag(placed);
   if (placed) {
@@ -90,17 +113,25 @@ void TrackDesk::answer(Question question, Unpacker& in, Packer& out) {
   }
 }
 
+bool TrackDesk::is_sound(std::span<const std::byte> report) const {
+  Unpacker in(report);
+  in.i64();
+  const std::size_t count = in.count(report_bytes);
+  if (count > tracks_max_) return false;
+  const std::vector<tracking::Report> tracks = take_reports(in, count);
+  return in.done() && std::all_of(tracks.begin(), tracks.end(), [](const auto& track) {
+           const gaussian::Belief& belief = track.belief;
+           return (belief.dimension() == 2 || belief.dimension() == 4) && belief.xi.allFinite() &&
+                  belief.omega.allFinite();
+         });
+}
+
 gaussian::Stamp TrackDesk::track_stamp() const { return state().i64(); }
 
 std::vector<tracking::Report> TrackDesk::confirmed_tracks() const {
   Unpacker in = state();
   in.i64();
-  std::vector<tracking::Report> reports(in.count(report_bytes));
-  for (tracking::Report& report : reports) {
-    report.label = in.u32();
-    take(in, report.belief);
-  }
-  return reports;
+  return take_reports(in, in.count(report_bytes));
 }
 
 void RemoteSightings::saw_place(AgentId, const Eigen::Vector2d& place_m,
@@ -130,22 +161,28 @@ void PoseDesk::answer(Question question, Unpacker& in, Packer&) {
   if (question == Question::saw_place) {
     Eigen::Vector2d place_m;
     take_numbers(in, place_m);
-    account_.saw_place(agent_, place_m, take_sighting(in));
+    const localization::RelativeSighting seen = take_sighting(in);
+    require_whole(in);
+    account_.saw_place(agent_, place_m, seen);
     return;
   }
   require(question == Question::saw_robot, "a localizer elsewhere asks for what it has not");
   const std::uint32_t other = in.u32();
   require(other < static_cast<std::uint32_t>(robots_), "a localizer saw a robot that is not there");
-  account_.saw_robot(agent_, static_cast<AgentId>(other), take_sighting(in));
+  const localization::RelativeSighting seen = take_sighting(in);
+  require_whole(in);
+  account_.saw_robot(agent_, static_cast<AgentId>(other), seen);
 }
 
-std::optional<PoseBelief> PoseDesk::own_pose() {
-  Unpacker in = state();
-  PoseBelief own{};
-  for (double* const x : {&own.pose.x_m, &own.pose.y_m, &own.pose.heading_rad}) *x = in.f64();
-  take_numbers(in, own.covariance);
-  return in.done() ? std::optional(own) : std::nullopt;
+bool PoseDesk::is_sound(std::span<const std::byte> report) const {
+  const std::optional<PoseBelief> own = take_pose_belief(Unpacker(report));
+  if (!own) return false;
+  const bool finite = std::isfinite(own->pose.x_m) && std::isfinite(own->pose.y_m) &&
+                      std::isfinite(own->pose.heading_rad) && own->covariance.allFinite();
+  return finite && Eigen::LLT<Eigen::Matrix3d>(own->covariance).info() == Eigen::Success;
 }
+
+std::optional<PoseBelief> PoseDesk::own_pose() { return take_pose_belief(state()); }
 
 Looks RemoteLooks::look(double heading_rad, std::uint64_t count) {
   Packer out = asking_.begin(Question::look);
@@ -161,6 +198,7 @@ Looks RemoteLooks::look(double heading_rad, std::uint64_t count) {
   }
   indices_.resize(in.count(4));
   for (std::uint32_t& index : indices_) index = in.u32();
+  require_whole(in);
   return {looks_, indices_};
 }
 
@@ -175,7 +213,9 @@ GridDesk::GridDesk(LookSource* looks, const grid::Area& area, const GridBelief::
 void GridDesk::answer(Question question, Unpacker& in, Packer& out) {
   require(question == Question::look && looks_, "an explorer elsewhere asks for what it has not");
   const double heading_rad = in.f64();
-  const Looks seen = looks_->look(heading_rad, in.u64());
+  const std::uint64_t count = in.u64();
+  require_whole(in);
+  const Looks seen = looks_->look(heading_rad, count);
   out.count(seen.looks.size());
   for (const grid::CellLook& look : seen.looks) {
     out.u32(static_cast<std::uint32_t>(look.cell));
@@ -185,6 +225,15 @@ void GridDesk::answer(Question question, Unpacker& in, Packer& out) {
   }
   out.count(seen.indices.size());
   for (const std::uint32_t index : seen.indices) out.u32(index);
+}
+
+bool GridDesk::is_sound(std::span<const std::byte> report) const {
+  Unpacker in(report);
+  bool finite = true;
+  for (std::size_t i = 0; i < evidence_.size(); ++i) finite = std::isfinite(in.f32()) && finite;
+  grid::LookLedger ledger;
+  take(in, belief_.shape(), ledger);
+  return finite && in.done();
 }
 
 // Zeros, where nothing came, are the prior.

@@ -37,14 +37,16 @@ class TrackReporter final : public Reporter {
 /// Its tracks are told without their trails.
 class TrackDesk final : public Desk, public TrackMind {
  public:
-  /// `plots`: null for who has no sensor. It outlives this.
-  explicit TrackDesk(PlotSource* plots) : source_(plots) {}
+  /// `plots`: null for who has no sensor. It outlives this. `tracks_max`: that it may report.
+  TrackDesk(PlotSource* plots, std::size_t tracks_max) : source_(plots), tracks_max_(tracks_max) {}
   void answer(Question question, Unpacker& in, Packer& out) override;
+  bool is_sound(std::span<const std::byte> report) const override;
   gaussian::Stamp track_stamp() const override;
   std::vector<tracking::Report> confirmed_tracks() const override;
 
  private:
   PlotSource* source_;
+  std::size_t tracks_max_;
   Plots plots_;
 };
 
@@ -76,6 +78,7 @@ class PoseDesk final : public Desk, public PoseMind {
   PoseDesk(SightingAccount& account, AgentId agent, AgentId robots)
       : account_(account), agent_(agent), robots_(robots) {}
   void answer(Question question, Unpacker& in, Packer& out) override;
+  bool is_sound(std::span<const std::byte> report) const override;
   std::optional<PoseBelief> own_pose() override;
 
  private:
@@ -110,6 +113,7 @@ class GridDesk final : public Desk, public GridMind {
   /// `looks`: null for who has no sensor. It outlives this.
   GridDesk(LookSource* looks, const grid::Area& area, const GridBelief::Options& belief);
   void answer(Question question, Unpacker& in, Packer& out) override;
+  bool is_sound(std::span<const std::byte> report) const override;
   /// The prior where nobody knows.
   const GridBelief& belief() const override;
   const grid::LookLedger& ledger() const override;

@@ -22,10 +22,14 @@ RemoteWorld::RemoteWorld(Superior& superior, const Order& first, const Options& 
 
 bool RemoteWorld::serve(const Parts& parts) {
   parts_ = &parts;
-  const bool dismissed = serve_until_dismissed(parts);
-  rider_ = RiderPtr();  // it may be of a pool of the agent's
-  parts_ = nullptr;
-  return dismissed;
+  struct AtEnd {
+    RemoteWorld& world;
+    ~AtEnd() {
+      world.rider_ = RiderPtr();  // it may be of a pool of the agent's
+      world.parts_ = nullptr;
+    }
+  } at_end{*this};
+  return serve_until_dismissed(parts);
 }
 
 bool RemoteWorld::serve_until_dismissed(const Parts& parts) {
@@ -41,12 +45,11 @@ bool RemoteWorld::serve_until_dismissed(const Parts& parts) {
     } catch (...) {
       error = std::current_exception();
     }
-    if (gone_) return false;
+    if (gone_) return dismissed_;
     if (parts.simulation.failed()) error = parts.simulation.failure();
     if (error) answer_.failure = what_of(error);
     if (options_.memory && !error) options_.memory->save(parts.agent);
-    if (!answer(error ? AnswerKind::failed : AnswerKind::done)) return false;
-    if (order_.kind == OrderKind::dismiss) return true;
+    if (!answer(error ? AnswerKind::failed : AnswerKind::done)) return dismissed_;
   }
 }
 
@@ -121,7 +124,8 @@ bool RemoteWorld::answer(AnswerKind kind) {
   const bool goes_on = superior_.exchange(answer_, order_);
   answer_ = {};
   anew_ = goes_on && order_.kind == OrderKind::start;
-  gone_ = !goes_on || anew_;
+  dismissed_ = goes_on && order_.kind == OrderKind::dismiss;
+  gone_ = !goes_on || anew_ || dismissed_;
   if (!gone_) look_around();
   return !gone_;
 }

@@ -60,6 +60,8 @@ class RemoteWorld final : public DistantWorld, private RecordTap, private Schedu
   /// Obeys until it is dismissed. @return false if the world went away before, or took it for gone
   /// and lets it begin anew.
   bool serve(const Parts& parts);
+  /// Nothing comes any more, and that is as it should be.
+  bool dismissed() const { return dismissed_; }
   /// The order to start once more: this life is over, the agent needs another world.
   const Order* next_life() const { return anew_ ? &order_ : nullptr; }
 
@@ -109,6 +111,7 @@ class RemoteWorld final : public DistantWorld, private RecordTap, private Schedu
   EstimatorWorkspace workspace_;
   RiderPtr rider_;  // of the packet that is being heard
   bool gone_ = false;
+  bool dismissed_ = false;
   bool anew_ = false;
 };
 

@@ -34,9 +34,7 @@ struct PeriodicTalk {
     return Time::at(phase + period * static_cast<std::int64_t>(k));
   }
   /// The first tick that is not before `now`.
-  std::uint64_t next_tick(Time now) const {
-    return instants_before(now, Time::at(phase), period);
-  }
+  std::uint64_t next_tick(Time now) const { return instants_before(now, Time::at(phase), period); }
 };
 
 /// The phase of agent `agent` of `agents`.

@@ -70,6 +70,7 @@ void TrailWitness::drove(int robot, double length_m, bool blocked, Doing doing, 
 
 bool TrailWitness::arrived(int robot, trails::EventId event) {
   Robot& r = robots_[index(robot)];
+  const std::string& name = world_.name_of(event);
   if (!r.set_off) return false;
   const Time now = simulation_.now();
   const Trip trip{r.distance_m - r.set_off_m, (now - *r.set_off).seconds()};
@@ -83,7 +84,7 @@ bool TrailWitness::arrived(int robot, trails::EventId event) {
   }
   r.set_off.reset();
   simulation_.record().event(now, r.agent, "arrived",
-                             world_.name_of(event) + ' ' + std::to_string(r.trips.size()) + ' ' +
+                             name + ' ' + std::to_string(r.trips.size()) + ' ' +
                                  std::to_string(trip.length_m) + ' ' +
                                  std::to_string(trip.duration_s));
   return true;

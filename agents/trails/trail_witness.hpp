@@ -37,7 +37,7 @@ class TrailWitness final : public TrailAccount {
   TrailWitness(Simulation& simulation, const RobotWorld& world, Options options);
 
   /// From now on the robot of an agent, and what it knows, are looked at. Robots in ascending
-  /// number of agents, 0 … n − 1 of the floor. `mind` outlives the witness.
+  /// number of agents, 0 … n − 1 of the floor. `mind` is there until finish() is over.
   void watch(AgentId agent, int robot, const TrailMind& mind);
 
   void sets_off(int robot) override;

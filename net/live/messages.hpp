@@ -54,7 +54,7 @@ struct Welcome {
   bool operator==(const Welcome&) const = default;
 };
 
-/// An order or an answer of lockstep.
+/// An order to an agent of hearsay's own, or an answer of one.
 struct Frame {
   std::uint32_t agent = 0;
   std::uint64_t number = 0;

@@ -81,6 +81,7 @@ std::string in_lockstep(const std::shared_ptr<const PreparedScenario>& prepared,
       }
     } catch (const remote::WorldGone&) {
       // It asked something before it began, and nobody answered.
+      if (world.dismissed()) return {};
     }
     // The world took this process for gone, and has it join again.
     if (!world.next_life()) return reactor.stopped() ? "" : gone;
@@ -134,8 +135,8 @@ std::string run_agent(const std::shared_ptr<const PreparedScenario>& prepared,
     return in_lockstep(prepared, catalog, options, *welcome, superior, reactor,
                        memory ? &*memory : nullptr);
   }
-  OrderLine line(orders, answers, reactor, options.id);
-  OwnTime own_time(prepared, options, *welcome, port, reactor, line, memory ? &*memory : nullptr);
+  OwnTime own_time(prepared, options, *welcome, port, reactor, orders, answers,
+                   memory ? &*memory : nullptr);
   return own_time.serve(catalog, status);
 }
 

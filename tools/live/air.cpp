@@ -4,11 +4,14 @@
 #include <set>
 #include <utility>
 
+#include "agents/trail_message.hpp"
 #include "filters/gaussian/message_forms.hpp"
 #include "filters/gaussian/trajectory_codec.hpp"
 #include "filters/gaussian/trajectory_factor.hpp"
+#include "filters/grid/codec.hpp"
 #include "filters/trails/codec.hpp"
 #include "scenarios/estimators.hpp"
+#include "scenarios/explorers.hpp"
 
 namespace hearsay::fleet {
 namespace {
@@ -70,6 +73,18 @@ bool is_sound_chain(const gaussian::TrajectoryEntry& entry) {
   return kind == Definiteness::positive || kind == Definiteness::singular;
 }
 
+bool is_sound_trails(std::span<const std::byte> bytes) {
+  gaussian::TrajectoryMessage message;
+  std::vector<tracking::Report> tracks;
+  if (!gaussian::decode(bytes, message) || !take_tracks(message, tracks)) return false;
+  return std::all_of(tracks.begin(), tracks.end(), [](const tracking::Report& track) {
+    if (!is_sound(track.belief)) return false;
+    if (!track.trail) return true;
+    const Definiteness kind = gaussian::TrajectoryFactor().factor(*track.trail);
+    return kind == Definiteness::positive || kind == Definiteness::singular;
+  });
+}
+
 bool is_sound_trajectory(std::span<const std::byte> bytes) {
   gaussian::TrajectoryMessage message;
   if (!gaussian::decode(bytes, message)) return false;
@@ -90,7 +105,12 @@ Tongue tongue_of(const PreparedScenario& prepared, AgentId id) {
   const AgentSpec& spec = *prepared.specs[static_cast<std::size_t>(id)];
   if (spec.kind == "forager") return {"trail", live::States::still};
   if (spec.kind == "localizer") return {"position", live::States::moving};
-  if (spec.kind == "explorer") return {"grid", live::States::still};
+  if (spec.kind == "explorer") {
+    return {.kind = "grid",
+            .states = live::States::still,
+            .cells = area_of(prepared.scenario.world).cells(),
+            .layers = spec.grid.belief == "beta" ? std::size_t{2} : std::size_t{1}};
+  }
   if (spec.kind == "tracker") {
     return {spec.tracker.trail_s ? "trails" : "tracks", live::States::moving};
   }
@@ -112,7 +132,10 @@ std::vector<Tongue> tongues_of(const PreparedScenario& prepared) {
 
 bool is_sound(const Tongue& tongue, std::span<const std::byte> message) {
   if (tongue.kind == "trail") return trails::MetricPacket::parse(message).has_value();
-  if (tongue.kind == "trails") return is_sound_trajectory(message);
+  if (tongue.kind == "trails") return is_sound_trails(message);
+  if (tongue.kind == "grid") {
+    return grid::Packet::parse(message, {tongue.cells, tongue.layers}).has_value();
+  }
   if (tongue.kind == "tracks" || tongue.kind == "position") {
     return is_sound(MessageForm::plain, true, message);
   }

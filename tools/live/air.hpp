@@ -17,6 +17,9 @@ namespace hearsay::fleet {
 struct Tongue {
   std::string kind;
   live::States states = live::States::still;
+  // Of grids: cells, and numbers a cell.
+  int cells = 0;
+  std::size_t layers = 1;
   auto operator<=>(const Tongue&) const = default;
 };
 /// Of each agent of a scenario, by number: those who estimate speak the kinds of their rules; what
@@ -25,8 +28,9 @@ struct Tongue {
 std::vector<Tongue> tongues_of(const PreparedScenario& prepared);
 Tongue tongue_of(const PreparedScenario& prepared, AgentId id);
 
-/// Whether a message can be fused: it is well-formed, all numbers are finite, and no belief in it
-/// is indefinite. Of kinds that no codec knows nobody can say: true.
+/// Whether a message can be taken in: it is well-formed, all numbers are finite, no belief in it is
+/// indefinite, and a grid is of the area's shape. Of kinds that no codec knows nobody can say:
+/// true.
 bool is_sound(const Tongue& tongue, std::span<const std::byte> message);
 
 /// Where an agent says what the world's radio is to carry.

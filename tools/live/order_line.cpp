@@ -12,15 +12,18 @@ constexpr auto patience = 100ms;
 
 }  // namespace
 
-OrderLine::OrderLine(live::Reader& orders, live::Writer& answers, Reactor& reactor, AgentId id)
-    : orders_(orders), answers_(answers), reactor_(reactor) {
+OrderLine::OrderLine(live::Reader& orders, live::Writer& answers, Reactor& reactor, AgentId id,
+                     std::function<void(const remote::Order&)> seen)
+    : orders_(orders), answers_(answers), reactor_(reactor), seen_(std::move(seen)) {
   frame_.agent = static_cast<std::uint32_t>(id);
 }
 
 bool OrderLine::receive(remote::Order& order) {
   live::Frame frame;
   while (orders_.take(bytes_)) {
-    if (live::decode(bytes_, frame) && remote::unpack(frame.content, order)) return true;
+    if (!live::decode(bytes_, frame) || !remote::unpack(frame.content, order)) continue;
+    seen_(order);
+    return true;
   }
   return false;
 }

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -21,8 +22,10 @@ class OrderLine {
   /// Orders that wait while an answer is waited for: with more, the world is given up.
   static constexpr std::size_t orders_max = 10'000;
 
-  /// `orders` and `answers` of agent `id`. All outlive this.
-  OrderLine(live::Reader& orders, live::Writer& answers, Reactor& reactor, AgentId id);
+  /// `orders` and `answers` of agent `id`; they and the reactor outlive this. `seen` is told of
+  /// each order when it comes, though it may have to wait.
+  OrderLine(live::Reader& orders, live::Writer& answers, Reactor& reactor, AgentId id,
+            std::function<void(const remote::Order&)> seen);
 
   /// The next order; false if there is none now.
   bool take(remote::Order& order);
@@ -41,6 +44,8 @@ class OrderLine {
   /// Whether the next order is to start anew, or none comes after it: the agent that asked is not
   /// answered.
   bool life_over() const { return life_over_; }
+  /// How many questions were asked. (While one waits for the answer, other news may have come.)
+  std::uint64_t asked() const { return asked_; }
 
  private:
   bool receive(remote::Order& order);
@@ -49,6 +54,7 @@ class OrderLine {
   live::Reader& orders_;
   live::Writer& answers_;
   Reactor& reactor_;
+  std::function<void(const remote::Order&)> seen_;
   Presence presence_{world_grace_s};
   live::Frame frame_;
   std::vector<std::byte> bytes_;

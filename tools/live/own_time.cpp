@@ -34,13 +34,14 @@ std::string air_in_partition(const AgentOptions& options) {
 }  // namespace
 
 OwnTime::OwnTime(std::shared_ptr<const PreparedScenario> prepared, const AgentOptions& options,
-                 const live::Welcome& welcome, live::Port& port, Reactor& reactor, OrderLine& line,
-                 remote::MemoryStore* memory)
+                 const live::Welcome& welcome, live::Port& port, Reactor& reactor,
+                 live::Reader& orders, live::Writer& answers, remote::MemoryStore* memory)
     : prepared_(std::move(prepared)),
       options_(options),
       welcome_(welcome),
       reactor_(reactor),
-      line_(line),
+      line_(orders, answers, reactor, options.id,
+            [this](const Order& order) { look_around(order); }),
       memory_(memory),
       tongue_(tongue_of(*prepared_, options.id)),
       air_out_(port, air_out_partition(options)),
@@ -66,17 +67,21 @@ std::string OwnTime::serve(const Catalog& catalog,
         set_clock(clock.now_ns);
       }
     }
+    const std::uint64_t asked = line_.asked();
     if (solo_) catch_up();
     if (!take_orders(catalog) || reactor_.stopped()) return {};
     if (solo_) {
       take_measurements();
       take_packets();
       if (line_.life_over()) continue;
+      if (reactor_.stopped()) return {};
       if (solo_->simulation().failed()) return line_.gone() ? gone : failure();
       if (memory_) memory_->save(solo_->agent());
     }
     line_.tell();
     if (line_.gone()) return gone;
+    // While it waited for answers other news may have come, of which nobody wakes it again.
+    if (line_.asked() != asked) continue;
     if (WallClock::now() >= next_status) {
       next_status = WallClock::now() + 500ms;
       status(status_text());
@@ -122,9 +127,13 @@ void OwnTime::begin(const Catalog& catalog, const Order& order) {
   // Above those of the process that had its place before.
   number_ = std::max(number_, std::uint64_t{order.lives} << 32);
   RecordTap* const tap = this;
+  // Who is there from the beginning misses nothing of it.
+  began_ = order.lives == 0 ? order.now : now();
   const Solo::Options own{
-      .id = options_.id, .seed = welcome_.seed, .now = now(), .tap = tap, .plans = nullptr};
-  leg_.reset();
+      .id = options_.id, .seed = welcome_.seed, .now = began_, .tap = tap, .plans = nullptr};
+  believer_ = nullptr;
+  solo_.reset();
+  set_out();
   try {
     remote::DistantWorld& world = *this;
     solo_ = std::make_unique<Solo>(prepared_, catalog, world, own);
@@ -132,11 +141,25 @@ void OwnTime::begin(const Catalog& catalog, const Order& order) {
     solo_.reset();  // it asked something before it began
     return;
   }
-  at_once([this, &order] { remote::begin_life(solo_->agent(), memory_, order.lives); });
+  // Not at once, but when it begins: catch_up() sees to the rest.
+  try {
+    remote::begin_life(solo_->agent(), memory_, order.lives);
+  } catch (...) {
+    solo_->simulation().fail(options_.id, std::current_exception());
+  }
+}
+
+void OwnTime::set_out() {
+  leg_.reset();
+  motion_.reset();
+  const bool moves = has_motion(prepared_->scenario) && !is_steered(*prepared_, options_.id);
+  if (!moves) return;
+  const auto i = static_cast<std::size_t>(options_.id);
+  motion_ = make_motion(*prepared_->specs[i], prepared_->places[i], options_.id, welcome_.seed);
+  leg_ = motion_->next();
 }
 
 bool OwnTime::obey(const Catalog& catalog, const Order& order) {
-  look_around(order);
   if (order.kind == OrderKind::dismiss) return false;
   if (order.kind == OrderKind::start) {
     begin(catalog, order);
@@ -177,8 +200,9 @@ void OwnTime::at_once(const std::function<void()>& happening) {
 
 void OwnTime::catch_up() {
   Simulation& simulation = solo_->simulation();
-  for (Time at = now(); !simulation.failed() && simulation.next_time() <= at; at = now()) {
-    const double late_s = (at - simulation.next_time()).seconds() / welcome_.speed;
+  // Not for ever, where a step takes longer than the time that it is for.
+  for (const Time at = now(); !simulation.failed() && simulation.next_time() <= at;) {
+    const double late_s = (now() - simulation.next_time()).seconds() / welcome_.speed;
     if (late_s > deadline_s) ++missed_;
     simulation.happen();
   }
@@ -240,11 +264,16 @@ bool OwnTime::send(AgentId sender, const Outgoing& packet) {
                      .subject = packet.subject};
   parcel.kind = solo_->simulation().record().text(packet.kind);
   parcel.message.assign(packet.bytes.begin(), packet.bytes.end());
+  line_.tell();  // what was noted comes first
   return air_out_.write(tongue_, parcel);
 }
 
 Point OwnTime::position(AgentId) const {
-  if (leg_) return leg_->at(std::min(solo_->simulation().now(), leg_->end));
+  if (leg_) {
+    const Time now = solo_ ? solo_->simulation().now() : began_;
+    while (motion_ && leg_->end <= now) leg_ = motion_->next();
+    return leg_->at(std::min(now, leg_->end));
+  }
   require(around_.position_m.has_value(), "radio: nobody knows where agents stand");
   return *around_.position_m;
 }
@@ -257,9 +286,7 @@ void OwnTime::steer(AgentId, const Leg& leg) {
 }
 
 std::span<const std::byte> OwnTime::ask(std::span<const std::byte> question) {
-  const Order& answer = line_.ask(question);
-  look_around(answer);
-  return answer.content;
+  return line_.ask(question).content;
 }
 
 // Nobody here knows the truth.

@@ -13,6 +13,7 @@
 #include "agents/catalog.hpp"
 #include "agents/remote/remote_world.hpp"
 #include "net/live/messages.hpp"
+#include "scenarios/motion.hpp"
 #include "scenarios/solo.hpp"
 #include "tools/live/air.hpp"
 #include "tools/live/options.hpp"
@@ -25,8 +26,8 @@ class OwnTime final : private remote::DistantWorld, private RecordTap {
  public:
   /// All outlive this.
   OwnTime(std::shared_ptr<const PreparedScenario> prepared, const AgentOptions& options,
-          const live::Welcome& welcome, live::Port& port, Reactor& reactor, OrderLine& line,
-          remote::MemoryStore* memory);
+          const live::Welcome& welcome, live::Port& port, Reactor& reactor, live::Reader& orders,
+          live::Writer& answers, remote::MemoryStore* memory);
   ~OwnTime() override;
 
   /// Until it is dismissed or asked to stop. @return what went wrong, or nothing.
@@ -55,6 +56,8 @@ class OwnTime final : private remote::DistantWorld, private RecordTap {
   void set_clock(std::int64_t now_ns);
   void look_around(const remote::Order& order);
   void begin(const Catalog& catalog, const remote::Order& order);
+  /// Where its path goes, by its own clock.
+  void set_out();
   /// @return false once it is dismissed.
   bool obey(const Catalog& catalog, const remote::Order& order);
   bool take_orders(const Catalog& catalog);
@@ -73,7 +76,7 @@ class OwnTime final : private remote::DistantWorld, private RecordTap {
   const AgentOptions& options_;
   live::Welcome welcome_;
   Reactor& reactor_;
-  OrderLine& line_;
+  OrderLine line_;
   remote::MemoryStore* memory_;  // null: it has none
   Tongue tongue_;
   AirOut air_out_;
@@ -84,7 +87,8 @@ class OwnTime final : private remote::DistantWorld, private RecordTap {
   std::unique_ptr<Solo> solo_;  // from the order to start on
   Believer* believer_ = nullptr;
   remote::Surroundings around_;
-  std::optional<Leg> leg_;  // of one that is steered: where it was last told to go
+  std::unique_ptr<Motion> motion_;  // null for who is steered, or where nobody moves
+  mutable std::optional<Leg> leg_;  // the one it moves along
   remote::Asking asking_{*this};
   std::vector<AgentId> neighbours_;
   EstimatorWorkspace workspace_;
@@ -92,6 +96,7 @@ class OwnTime final : private remote::DistantWorld, private RecordTap {
   std::map<std::uint32_t, std::uint64_t> heard_;  // direct: number of the last packet, by sender
   std::vector<std::byte> bytes_;
   WallTime begin_;          // when this object was made
+  Time began_;              // the agent's life, by the fleet's time
   double ahead_s_ = -1e18;  // fleet's time less wall time since begin_ × speed
   std::uint64_t number_ = 0;
   std::uint64_t old_ = 0;  // packets that were heard before

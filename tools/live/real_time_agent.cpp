@@ -136,8 +136,12 @@ void RealTimeAgent::answer(const remote::Answer& question) {
   try_to([&] { remote::take_notes(question.notes, context(), options_.desk, scratch_); });
   if (question.kind == remote::AnswerKind::done) {
     if (question.content.empty()) return;
-    state_ = question.content;
     state_told_ = true;
+    if (options_.desk && options_.desk->is_sound(question.content)) {
+      state_ = question.content;
+    } else {
+      ++dropped_;
+    }
     return;
   }
   if (question.kind != remote::AnswerKind::ask) return;

@@ -78,7 +78,7 @@ RunEnd RealTimeWorld::drive(Run& run, const std::function<void(const std::string
 }
 
 void RealTimeWorld::catch_up(Simulation& simulation, Time until) {
-  while (!simulation.failed() && simulation.next_time() <= until) {
+  while (!simulation.failed() && !reactor_.stopped() && simulation.next_time() <= until) {
     const WallTime due = begin_ + wall(simulation.next_time().seconds() / options_.speed);
     if (WallClock::now() > due + wall(deadline_s)) ++late_;
     simulation.happen();

@@ -3,11 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "agents/remote/remote_agent.hpp"
 #include "agents/remote/remote_body.hpp"
 #include "agents/remote/remote_eyes.hpp"
-#include "agents/remote/riders.hpp"
 #include "net/radio.hpp"
 #include "sim/kernel/error.hpp"
 
@@ -24,11 +24,13 @@ class Robot final : public RobotBody, public TrailAccount {
     for (std::size_t i = 0; i < distances_m.size(); ++i) distances_m[i] = 0.1 * double(i) + 1.0;
   }
   plan::RobotFloor::Step drive(const drive::Command& wanted, double dt_s) override {
+    ++acts_;
     pose_ = drive::driven(pose_, wanted, dt_s);
     return {wanted, true};
   }
-  bool happens(trails::EventId event) override { return event == 3; }
+  bool happens(trails::EventId event) override { return ++acts_, event == 3; }
   bool put_back(std::uint64_t count) override {
+    ++acts_;
     pose_ = {-1.0, -2.0, 0.5};
     return count == 7;
   }
@@ -58,10 +60,12 @@ class Robot final : public RobotBody, public TrailAccount {
 
   template <class... T>
   void tell(const char* what, T... values) {
+    ++acts_;
     heard_ += what;
     ((heard_ += ' ' + std::to_string(values)), ...);
     heard_ += '\n';
   }
+  std::size_t acts_ = 0;
   drive::Pose pose_{1.0, 2.0, 3.0};
   std::string heard_;
   std::vector<trails::Crumb> told_;
@@ -91,14 +95,17 @@ class Desks : public testing::Test, public Asker {
     EXPECT_THROW(serve(question, context_, desk_, answer_), BrokenInvariant);
   }
   /// All that is cut off or longer is refused; whatever else is damaged does no harm.
-  void expect_last_is_guarded() {
+  /// `acts`: how often anything was done.
+  void expect_last_is_guarded(const std::function<std::size_t()>& acts) {
     const Bytes whole = last_;
+    const std::size_t before = acts();
     for (std::size_t size = 0; size < whole.size(); ++size) {
       expect_refused(Bytes(whole.begin(), whole.begin() + std::ptrdiff_t(size)));
     }
     Bytes longer = whole;
     longer.push_back(std::byte{0});
     expect_refused(longer);
+    EXPECT_EQ(acts(), before);
     Stream draws(1, Purpose("damage"), Entity{whole.size()});
     for (int round = 0; round < 500; ++round) {
       Bytes bytes = whole;
@@ -140,10 +147,10 @@ TEST_F(Desks, ARobotElsewhereHasTheBodyThatItHasHere) {
   EXPECT_EQ(step.done.turn_rad_per_s, -0.25);
   EXPECT_TRUE(step.blocked);
   expect_same_pose();
-  expect_last_is_guarded();
+  const auto acts = [&there] { return there.acts_; };
   EXPECT_TRUE(body.happens(3));
   EXPECT_FALSE(body.happens(2));
-  expect_last_is_guarded();
+  expect_last_is_guarded(acts);
   EXPECT_FALSE(body.way(2));
   const auto way = body.way(3);
   ASSERT_TRUE(way);
@@ -153,6 +160,9 @@ TEST_F(Desks, ARobotElsewhereHasTheBodyThatItHasHere) {
   EXPECT_TRUE(body.put_back(7));
   here.put_back(7);
   expect_same_pose();
+  expect_last_is_guarded(acts);
+  body.drive({0.5, -0.25}, 0.1);
+  expect_last_is_guarded(acts);
   // A scanner of another number of rays than the world's is no scanner of this robot.
   std::vector<double> other(5);
   EXPECT_THROW(body.scan(other), BrokenInvariant);
@@ -163,8 +173,10 @@ TEST_F(Desks, WhatARobotElsewhereTellsIsKeptUnderItsNumber) {
   RobotDesk desk(robot, robot, 5, 4);
   desk_ = &desk;
   RemoteAccount account(*this);
+  const auto acts = [&robot] { return robot.acts_; };
   account.drove(99, 0.25, true, TrailAccount::Doing::searching, 0.1);
-  expect_last_is_guarded();
+  EXPECT_EQ(robot.heard_, "drove 5 0.250000 1 2 0.100000\ndrove 5 0.250000 1 2 0.100000\n");
+  expect_last_is_guarded(acts);
   robot.heard_.clear();
   account.sets_off(99);
   account.dropped(99);
@@ -183,16 +195,19 @@ TEST_F(Desks, WhatARobotElsewhereTellsIsKeptUnderItsNumber) {
   account.told(99, {&crumb, 1});
   ASSERT_EQ(robot.told_.size(), 1U);
   EXPECT_EQ(robot.told_[0], crumb);
-  expect_last_is_guarded();
+  expect_last_is_guarded(acts);
+  robot.heard_.clear();
   account.learned(99, 8, {&crumb.identity, 1});
   ASSERT_EQ(robot.learned_.size(), 1U);
   EXPECT_EQ(robot.learned_[0], crumb.identity);
-  expect_last_is_guarded();
+  EXPECT_EQ(robot.heard_, "learned 5 8\nlearned 5 8\n");
+  expect_last_is_guarded(acts);
 }
 
 TEST_F(Desks, TrackersLocalizersAndExplorersSeeWhatTheyWouldSeeHere) {
   struct Source final : PlotSource, LookSource {
     void scan(std::uint64_t count, Plots& out) override {
+      ++acts;
       out = {};
       if (count == 1) return;
       out.coverage.centre = gaussian::Vector::Constant(2, 4.0);
@@ -203,14 +218,17 @@ TEST_F(Desks, TrackersLocalizersAndExplorersSeeWhatTheyWouldSeeHere) {
       out.plots[1].S(0, 1) = 0.5;
     }
     Looks look(double heading_rad, std::uint64_t count) override {
+      ++acts;
       looks = {{int(count), heading_rad, 1.0, 2.0}, {9, -0.5, 0.0, 3.0}};
       if (count > 0) indices = {7, 4};
       return {looks, indices};
     }
     std::vector<grid::CellLook> looks;
     std::vector<std::uint32_t> indices;
+    std::size_t acts = 0;
   } source;
-  TrackDesk track_desk(&source);
+  const auto acts = [&source] { return source.acts; };
+  TrackDesk track_desk(&source, 10);
   desk_ = &track_desk;
   RemotePlots remote_plots(*this);
   Plots plots;
@@ -225,7 +243,7 @@ TEST_F(Desks, TrackersLocalizersAndExplorersSeeWhatTheyWouldSeeHere) {
   EXPECT_TRUE(plots.plots.empty());
   EXPECT_EQ(plots.coverage.centre.size(), 0);
   EXPECT_EQ(plots.coverage.range, std::numeric_limits<double>::infinity());
-  expect_last_is_guarded();
+  expect_last_is_guarded(acts);
 
   const grid::Area area({.columns = 4, .rows = 4, .cell_m = 10.0});
   GridDesk grid_desk(&source, area, grid::BernoulliGrid::Options());
@@ -238,7 +256,7 @@ TEST_F(Desks, TrackersLocalizersAndExplorersSeeWhatTheyWouldSeeHere) {
   EXPECT_EQ(seen.looks[0].cell, 6);
   EXPECT_EQ(seen.looks[0].ratio, 0.75);
   EXPECT_EQ(seen.looks[1].n, 3.0);
-  expect_last_is_guarded();
+  expect_last_is_guarded(acts);
   EXPECT_EQ(grid_desk.belief().probability(3), 0.5);  // nobody has told
 
   struct Account final : SightingAccount {
@@ -256,7 +274,7 @@ TEST_F(Desks, TrackersLocalizersAndExplorersSeeWhatTheyWouldSeeHere) {
   desk_ = &pose_desk;
   RemoteSightings sightings(*this);
   sightings.saw_place(9, {10.0, 20.0}, {0.5, 0.25, 0.125, 0.0625});
-  expect_last_is_guarded();
+  expect_last_is_guarded([&account] { return account.heard.size(); });
   EXPECT_EQ(account.heard.front(), 31.5625);
   account.heard.clear();
   sightings.saw_robot(9, 2, {0.5, 0.25, 0.125, 0.0625});
@@ -265,68 +283,12 @@ TEST_F(Desks, TrackersLocalizersAndExplorersSeeWhatTheyWouldSeeHere) {
   EXPECT_FALSE(pose_desk.own_pose());  // nobody has told
 }
 
-TEST(Riders, LedgersOfGridsComeBackNumberByNumber) {
-  const grid::Shape shape{.cells = 5, .layers = 2};
-  RiderPool<GridRider> here, there;
-  GridRiders from(here, shape), to(there, shape);
-  GridRider* rider = nullptr;
-  const RiderPtr holds = here.make(rider);
-  rider->ledger = grid::LookLedger(shape);
-  rider->ledger.looked(1, 0);
-  rider->ledger.looked(1, 2);
-  const std::vector<float> odd{0.5F, -2.0F};
-  rider->ledger.assign(9, odd);
-  Bytes bytes;
-  from.write(*rider, bytes);
-  const auto weights_of = [&](const RiderPtr& read, std::size_t number) {
-    const auto weights = dynamic_cast<const GridRider&>(*read.get()).ledger.weights(number);
-    return std::vector<float>(weights.begin(), weights.end());
-  };
-  for (int again = 0; again < 2; ++again) {  // the second time in room that was used before
-    const RiderPtr read = to.read(bytes);
-    for (std::size_t number = 0; number < 10; ++number) {
-      EXPECT_EQ(weights_of(read, number), weights_of(holds, number)) << number;
-    }
-    EXPECT_EQ(weights_of(read, 3), (std::vector<float>{1.0F, 0.0F, 1.0F}));
-    EXPECT_EQ(weights_of(read, 9), odd);
-  }
-  GridRiders other(there, {.cells = 4, .layers = 2});
-  EXPECT_THROW(other.read(bytes), BrokenInvariant);
-  for (std::size_t size = 0; size < bytes.size(); ++size) {
-    EXPECT_THROW(to.read(std::span(bytes).first(size)), BrokenInvariant) << size;
-  }
-  Stream draws(1, Purpose("damage"), Entity{0});
-  for (int round = 0; round < 2000; ++round) {
-    Bytes damaged = bytes;
-    damaged[draws.below(damaged.size())] = static_cast<std::byte>(draws.bits());
-    try {
-      to.read(damaged);
-    } catch (const BrokenInvariant&) {
-    }
-  }
-}
-
-TEST(Riders, OfAnotherKindNothingIsSaid) {
-  LedgerPool ledgers;
-  RiderPool<GridRider> grids;
-  LedgerRider* ledger = nullptr;
-  const RiderPtr holds = ledgers.make(ledger);
-  Bytes bytes(3);
-  GridRiders(grids, {.cells = 5, .layers = 1}).write(*ledger, bytes);
-  EXPECT_TRUE(bytes.empty());
-  GridRider* grid = nullptr;
-  const RiderPtr holds_grid = grids.make(grid);
-  bytes.resize(3);
-  LedgerRiders(ledgers).write(*grid, bytes);
-  EXPECT_TRUE(bytes.empty());
-}
-
 TEST_F(Desks, WhoHasNoDeskCannotAsk) {
   const Bytes question(1, static_cast<std::byte>(Question::pose));
   expect_refused(question);
   expect_refused({});
   expect_refused(Bytes(1, static_cast<std::byte>(static_cast<int>(question_last) + 1)));
-  TrackDesk blind(nullptr);
+  TrackDesk blind(nullptr, 10);
   desk_ = &blind;
   RemotePlots plots(*this);
   Plots out;

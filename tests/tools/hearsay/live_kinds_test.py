@@ -31,6 +31,17 @@ class RealTime(LiveBed):
             names = f"SELECT DISTINCT name FROM {table} ORDER BY name"
             self.assertEqual(self.rows("live.db", names), self.rows("run.db", names))
 
+    def series(self, name, agent):
+        return [value for (value,) in self.rows(
+            "live.db", "SELECT value FROM series WHERE name = ? AND agent = ? ORDER BY t_s", name, agent)]
+
+    def test_trackers_with_trails_understand_each_other(self):
+        self.live(CROSSING, "--set", "duration_s=100", "--set", "agents.tracker.trail_s=10", "--speed", 20,
+                  "--out", "live.db")
+        for tracker in range(4):
+            self.assertGreater(self.value("live.db", tracker, "fusions"), 20)
+            self.assertEqual(self.value("live.db", tracker, "messages_refused"), 0)
+
     def test_robots_lay_and_follow_trails(self):
         words = [CORRIDOR, "--set", "duration_s=300"]
         self.live(*words, "--speed", 20, "--out", "live.db")
@@ -51,6 +62,9 @@ class RealTime(LiveBed):
         for tracker in range(4):
             self.assertGreater(self.value("live.db", tracker, "tracks_confirmed"), 1)
             self.assertGreater(self.value("live.db", tracker, "fusions"), 5)
+            # What it told of itself was compared with the truth: of three targets it has two, by and by.
+            missed = self.series("missed_targets", tracker)[-10:]
+            self.assertLess(sum(missed) / len(missed), 1.5)
 
     def test_explorers_look_where_they_fly(self):
         words = [EXPLORE, "--set", "duration_s=100", "--set", "record.ledger=off"]
@@ -60,6 +74,8 @@ class RealTime(LiveBed):
             self.assertGreater(self.value("live.db", explorer, "distance_flown_m"), 50.0)
             self.assertGreater(self.value("live.db", explorer, "cells_seen_share"), 0.1)
             self.assertGreater(self.value("live.db", explorer, "fusions"), 3)
+            entropy = self.series("entropy_nats", explorer)
+            self.assertLess(entropy[-1], 0.9 * entropy[0])
 
 
 class AnotherProcessTakesTheirPlace(LiveBed):

@@ -4,8 +4,11 @@
 #include <limits>
 
 #include "agents/estimator_agent.hpp"
+#include "agents/trail_message.hpp"
 #include "filters/gaussian/message_forms.hpp"
 #include "filters/gaussian/trajectory_codec.hpp"
+#include "filters/grid/codec.hpp"
+#include "filters/trails/codec.hpp"
 #include "tools/live/air.hpp"
 
 namespace hearsay::fleet {
@@ -202,6 +205,88 @@ TEST(Soundness, WholeTrajectoriesAreChainsOfStepsOfOneDimension) {
   entry = trajectory(-0.5);
   entry.steps[2].information = Belief::unknown(3);
   EXPECT_FALSE(sound(entry));
+}
+
+/// A track of two steps and the present, as trackers tell it.
+Bytes trails_of(double first_omega, double now_omega, gaussian::Stamp second = 20) {
+  const gaussian::Matrix one = gaussian::Matrix::Identity(2, 2);
+  gaussian::Trajectory trail(2, 10);
+  Belief step = Belief::unknown(2);
+  step.omega = 2.0 * one;
+  trail.update(0, step);
+  trail.append(20, -0.5 * one, step);
+  Belief now = Belief::unknown(2);
+  now.omega = now_omega * one;
+  gaussian::TrajectoryMessage message;
+  const std::vector<tracking::Report> reports{{7, now, trail}};
+  put_tracks(reports, 30, message);
+  message.trajectories[0].steps[0].information.omega(0, 0) = first_omega;
+  message.trajectories[0].steps[1].stamp = second;
+  Bytes bytes;
+  gaussian::encode(message, bytes);
+  return bytes;
+}
+
+TEST(Soundness, TracksWithTrailsAreSound) {
+  const Tongue trails{"trails", live::States::moving};
+  EXPECT_TRUE(is_sound(trails, trails_of(2.0, 1.0)));
+  EXPECT_FALSE(is_sound(trails, trails_of(-3.0, 1.0)));
+  EXPECT_FALSE(is_sound(trails, trails_of(2.0, -1.0)));
+  EXPECT_FALSE(is_sound(trails, trails_of(nan, 1.0)));
+  EXPECT_FALSE(is_sound(trails, trails_of(2.0, infinite)));
+  EXPECT_FALSE(is_sound(trails, Bytes(20)));
+}
+
+TEST(Soundness, TracksAndPositionsAreBeliefsOfStates) {
+  for (const char* kind : {"tracks", "position"}) {
+    const Tongue tongue{kind, live::States::moving};
+    EXPECT_TRUE(is_sound(tongue, message_of(MessageForm::plain, true, {})));
+    Parts parts;
+    parts.belief.omega(0, 0) = -1.0;
+    EXPECT_FALSE(is_sound(tongue, message_of(MessageForm::plain, true, parts)));
+    EXPECT_FALSE(is_sound(tongue, Bytes(20)));
+  }
+}
+
+TEST(Soundness, GridsAreOfTheAreasShapeAndFinite) {
+  const Tongue tongue{.kind = "grid", .cells = 6, .layers = 1};
+  const std::vector<float> evidence{1.0F, 2.0F, 3.0F, -1.0F, 0.0F, 0.5F};
+  grid::Encoder encoder;
+  for (const grid::Form form : {grid::Form::whole, grid::Form::runs}) {
+    grid::Encoder::Message message;
+    message.evidence = evidence;
+    message.form = form;
+    const auto packets = encoder.encode(message, {6, 1}, 1400);
+    ASSERT_EQ(packets.size(), 1U);
+    Bytes bytes = packets[0];
+    EXPECT_TRUE(is_sound(tongue, bytes));
+    EXPECT_FALSE(is_sound({.kind = "grid", .cells = 6, .layers = 2}, bytes));
+    EXPECT_FALSE(is_sound({.kind = "grid", .cells = 5, .layers = 1}, bytes));
+    bytes[24] = std::byte{7};  // a form that is none
+    EXPECT_FALSE(is_sound(tongue, bytes));
+    bytes = packets[0];
+    for (std::size_t k = 1; k <= 4; ++k) bytes[bytes.size() - k] = std::byte{0xff};  // NaN
+    EXPECT_FALSE(is_sound(tongue, bytes));
+    bytes.pop_back();
+    EXPECT_FALSE(is_sound(tongue, bytes));
+  }
+}
+
+TEST(Soundness, TrailsOfRobotsAreWellFormed) {
+  const Tongue tongue{.kind = "trail"};
+  trails::MetricEncoder encoder;
+  const trails::Crumb crumb{.event = 1, .position = {1.0F, 2.0F}, .distance_s = 3.0F};
+  trails::MetricEncoder::Message message;
+  message.sender = 1;
+  message.crumbs = {&crumb, 1};
+  const auto packets = encoder.encode(message, 1400);
+  ASSERT_EQ(packets.size(), 1U);
+  Bytes bytes = packets[0];
+  EXPECT_TRUE(is_sound(tongue, bytes));
+  for (std::size_t k = 1; k <= 4; ++k) bytes[bytes.size() - k] = std::byte{0xff};  // NaN
+  EXPECT_FALSE(is_sound(tongue, bytes));
+  bytes.resize(bytes.size() - 4);
+  EXPECT_FALSE(is_sound(tongue, bytes));
 }
 
 }  // namespace

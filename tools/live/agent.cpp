@@ -54,6 +54,18 @@ std::optional<live::Welcome> join(live::Port& port, Reactor& reactor, const Agen
   return std::nullopt;
 }
 
+/// @throws InputError for an agent that has nothing to keep. (Of a user's own kinds save() says.)
+void require_memory(const PreparedScenario& prepared, const Catalog& catalog, AgentId id) {
+  const auto i = static_cast<std::size_t>(id);
+  const AgentSpec& spec = *prepared.specs[i];
+  const bool own = catalog.agents().contains(spec.kind);
+  if (own || (spec.kind == "estimator" && spec.estimator.kind != "trajectory-gaussian")) return;
+  throw InputError(prepared.scenario.file, 0,
+                   "agent '" + prepared.names[i] +
+                       "' keeps no memory (--memory); estimators of kind 'static-gaussian' and "
+                       "'moving-gaussian' do");
+}
+
 std::string in_lockstep(const std::shared_ptr<const PreparedScenario>& prepared,
                         const Catalog& catalog, const AgentOptions& options,
                         const live::Welcome& welcome, FrameSuperior& superior, Reactor& reactor,
@@ -102,6 +114,7 @@ std::string run_agent(const std::shared_ptr<const PreparedScenario>& prepared,
   }
   std::optional<MemoryFile> memory;
   if (!options.memory.empty()) {
+    require_memory(*prepared, catalog, options.id);
     memory.emplace(options.memory,
                    fmt::format("agent {} of scenario {}", options.id, options.scenario_hash));
   }

@@ -36,7 +36,7 @@ bool MemoryFile::recall(Agent& agent) {
 
 void MemoryFile::save(const Agent& agent) {
   if (!agent.save(now_)) {
-    throw std::runtime_error("agents of this kind, or with this estimator, cannot keep a memory");
+    throw InputError(file_, 0, "agents of this kind cannot keep a memory");
   }
   if (now_ == memory_) return;
   bytes_.clear();

@@ -23,6 +23,14 @@ class Lockstep(LiveBed):
         self.expect_same(EXPLORE, "--set", "duration_s=40")
 
 
+class Refused(LiveBed):
+    def test_a_memory_of_who_keeps_none(self):
+        for words in [[CORRIDOR], [CROSSING], [EXPLORE], [SOURCE / "scenarios/merino/ch3-window.toml"]]:
+            agent = self.start("agent", *words, "--id", 0, "--memory", "memory")
+            self.ends(agent, 2)
+            self.assertIn("keeps no memory (--memory); estimators of kind", agent.trouble())
+
+
 class RealTime(LiveBed):
     def expect_names(self, *words):
         """The record is one like any other."""

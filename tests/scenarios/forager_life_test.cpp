@@ -183,8 +183,10 @@ class ForagerWaits : public ForagerLife, public testing::WithParamInterface<std:
 
 TEST_P(ForagerWaits, UntilAllHaveMadeATripAndThenSetsOff) {
   const std::string task = with(team, "[\"A\", \"B\"]", GetParam());
-  const std::string laid = with(task, "trails = {", "trails = { laying = \"completed\",");
-  const Values values = run(with(laid, "at-once", "at-event"));
+  const std::string laid =
+      with(task, "trails = {", "trails = { laying = \"completed\", transform = \"as-is\", ");
+  const std::string one_frame = with(laid, "rays = 90", "rays = 90, frame = \"shared\"");
+  const Values values = run(with(one_frame, "at-once", "at-event"));
   double first_s = 600.0, all_s = 0.0;
   for (AgentId id = 0; id < 3; ++id) {
     const std::vector<double> arrivals = values.times(id, "arrived");

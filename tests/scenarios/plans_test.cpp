@@ -172,7 +172,8 @@ TEST_F(Plans, CanonicalTextReadsBackAsItself) {
   const std::string carried =
       read_back(with(scenario, "events = [\"A\", \"B\"] }\ntrails = {}",
                      "events = [\"B\"], respawn = true }\n"
-                     "trails = { laying = \"completed\", trail_crumbs_max = 70 }"));
+                     "trails = { laying = \"completed\", trail_crumbs_max = 70, "
+                     "transform = \"as-is\" }"));
   EXPECT_NE(carried.find("respawn = true"), std::string::npos) << carried;
   EXPECT_NE(carried.find("trail_crumbs_max = 70"), std::string::npos) << carried;
   const std::string text = read_back(all);

@@ -2,7 +2,7 @@
 import signal
 import unittest
 
-from bed import RING, SOURCE
+from bed import RING
 from live_bed import LiveBed
 
 
@@ -64,13 +64,6 @@ class BadInput(LiveBed):
         done = self.start("live", "ring.toml", "--interface", "nowhere0")
         self.ends(done, 2)
         self.assertIn("the network interface 'nowhere0' cannot be used", done.trouble())
-
-    def test_a_scenario_of_which_agents_cannot_live_elsewhere(self):
-        for words in [["world"], ["live"], ["agent", "--id", "0"]]:
-            done = self.command(words[0], SOURCE / "scenarios/lost/corridor.toml", *words[1:], "--fleet", self.fleet)
-            self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
-            self.assertIn("forager", done.stderr)
-            self.assertEqual(len(done.stderr.strip().split("\n")), 1, done.stderr)
 
     def test_a_typo(self):
         file = self.write("bad.toml", RING.replace("topology =", "topolgy ="))

@@ -116,9 +116,9 @@ Run::Run(std::shared_ptr<const PreparedScenario> prepared, const Catalog& catalo
   robots_.assign(prepared_->specs.size(), -1);
   if (has_foragers(prepared_->scenario)) {
     robot_world_ = make_robot_world(prepared_->scenario, simulation_);
-    int robot = 0;
     for (std::size_t i = 0; i < robots_.size(); ++i) {
-      if (prepared_->specs[i]->kind == "forager") robots_[i] = robot++;
+      if (prepared_->specs[i]->kind != "forager") continue;
+      robots_[i] = robot_of(*prepared_, static_cast<AgentId>(i));
     }
   }
   build_radio(options.seed);

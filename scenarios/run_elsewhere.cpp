@@ -21,12 +21,13 @@ std::unique_ptr<Agent> Run::make_stand_in(AgentId id) {
 }
 
 std::unique_ptr<Agent> Run::make_estimator_elsewhere(AgentId id) {
-  Context& context = *contexts_[static_cast<std::size_t>(id)];
-  std::unique_ptr<remote::RiderCodec>& riders = equipment_.back().riders;
+  const auto i = static_cast<std::size_t>(id);
+  Context& context = *contexts_[i];
+  std::unique_ptr<remote::RiderCodec>& riders = equipment_[i].riders;
   if (witness_->ledgers()) riders = std::make_unique<remote::LedgerRiders>(*witness_->ledgers());
   auto agent = elsewhere_(context, {.witness = witness_.get(), .riders = riders.get()});
   witness_->watch(id, agent->believer());
-  lookouts_.back() = make_lookout(*prepared_, id, context, *witness_, *agent, subjects_);
+  lookouts_[i] = make_lookout(*prepared_, id, context, *witness_, *agent, subjects_);
   return agent;
 }
 
@@ -60,7 +61,7 @@ std::unique_ptr<Agent> Run::make_explorer_elsewhere(AgentId id) {
   auto desk =
       std::make_unique<remote::GridDesk>(options.looks, options.area, options.estimator.belief);
   if (grid_witness_->riders()) {
-    equipment_.back().riders =
+    equipment_[static_cast<std::size_t>(id)].riders =
         std::make_unique<remote::GridRiders>(*grid_witness_->riders(), desk->belief().shape());
   }
   grid_witness_->watch(id, *desk);

@@ -286,8 +286,8 @@ void RemoteAgent::refresh() {
 
 // What it knows may change as time goes by, whatever happens: a robot drives on.
 std::span<const std::byte> RemoteAgent::state() {
-  if (told_at_ != context().now()) fresh_ = false;
-  told_at_ = context().now();
+  if (asked_at_ != context().now()) fresh_ = false;
+  asked_at_ = context().now();
   refresh();
   return state_;
 }

@@ -111,8 +111,8 @@ class RemoteAgent final : public StandIn {
   std::uint32_t lives_ = 0;
   bool begun_ = false;
   bool silent_ = false;
-  Time told_at_ = Time::never();  // state_ is as of then
-  bool fresh_ = false;            // beliefs_ and state_ are those of now
+  Time asked_at_ = Time::never();  // state_ is as of then
+  bool fresh_ = false;             // beliefs_ and state_ are those of now
 };
 
 }  // namespace hearsay::remote
